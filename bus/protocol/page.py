@@ -3,11 +3,12 @@ compares."""
 
 import sys
 from collections.abc import Iterator
+from dataclasses import astuple
 from pathlib import Path
 from typing import Any
 
 from bus.protocol.names import FRAME_BYTES, HEARTBEAT_KIND, SUMMARY_KIND, Device
-from bus.protocol.nodes import DEVICES, documented
+from bus.protocol.nodes import DEVICES, KINDS, documented
 from bus.protocol.report import PLACES
 from bus.protocol.serial import MEANINGS, SAMPLES, SYNC, fields, packet_bytes
 
@@ -94,6 +95,14 @@ def _devices() -> Iterator[str]:
         yield f"| {device.name} | {int(device):#04x} | {frames} |"
 
 
+def _parameters() -> Iterator[str]:
+    yield "\n## Parameters of declared boards\n"
+    yield "| board | number | parameter | range | after power-up |\n|---|---|---|---|---|"
+    for kind in KINDS:
+        for number, name, low, high, default in map(astuple, kind.parameters):
+            yield f"| {kind.name} | {number} | {name.upper()} | {low}..{high} | {default} |"
+
+
 def _row(signal: Any) -> str:
     bits = f"{signal.start}" if signal.length == 1 else f"{signal.start}..{signal.start + signal.length - 1}"
     kind = f"{'i' if signal.is_signed else 'u'}{signal.length}"
@@ -162,7 +171,7 @@ def page() -> str:
     lines = [_INTRO.rstrip(), *_devices(), "\n## Frames in short\n"]
     lines += ["| identifier less type | frame | boards | period | signals |", "|---|---|---|---|---|"]
     lines += _in_short([message for message, _ in shown.values()])
-    lines += [_REPORTS, *_places(), _PACKETS, *_samples(), "\n## Frames"]
+    lines += [*_parameters(), _REPORTS, *_places(), _PACKETS, *_samples(), "\n## Frames"]
     for message, devices in shown.values():
         lines += _message(message, devices)
     return "\n".join(lines) + "\n"

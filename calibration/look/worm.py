@@ -77,7 +77,7 @@ def longest_span(problem: Problem) -> float:
 
 
 def part_candidates(problem: Problem, mount: Mount, part: Part, counts: Sequence[int]) -> list[Candidate]:
-    """One part with different numbers of harmonics, none of which another part's turn could be."""
+    """One part with different numbers of harmonics, with and without those of another part's turn."""
     place: dict[str, Any] = {"stage": part.name, "harmonic": 1, "order": part.rate * SIDEREAL_DAY_S}
     others = [other.rate for other in mount.parts if mount.named and other is not part]
     cell = 1.0 / max(longest_span(problem), 1e-9)
@@ -86,7 +86,8 @@ def part_candidates(problem: Problem, mount: Mount, part: Part, counts: Sequence
         return h == 1 or all(abs(h * part.rate - rate) > cell for rate in others)
 
     seen = [count for count in counts if part.rate * count < 0.4 / problem.period_s]
-    sets = {tuple(filter(apart, range(1, count + 1))) for count in seen}
+    # a wheel that turns at a multiple of the worm may have that harmonic, or the worm itself
+    sets = {tuple(h for h in range(1, n + 1) if every or apart(h)) for n in seen for every in (True, False)}
     return [c for waves in sorted(sets) for c in _periodic(problem, part.effect, part.rate, waves, **place)]
 
 

@@ -29,9 +29,22 @@ T, SETPOINT, EFFORT, POSITION, VELOCITY, ADC_A, ADC_B, TACH_A, TACH_B, AUX, LOG_
     DUTY_B,
     TRUTH_SIZE,
 ) = range(13)
-# settings of a run
-KP, KI, STEPS, SPLIT, TICK_STEPS, LATENCY, AMPERE, DELAYS, SETTINGS = 0, 1, 2, 3, 4, 5, 6, 7, 12
-LATE_POSITION, LATE_VELOCITY, LATE_CURRENT, LATE_TACH = DELAYS + 1, DELAYS + 2, DELAYS + 3, DELAYS + 4
+# settings of a run: at DELAYS that of the effort, which is not read, and those of readings, s
+(
+    KP,
+    KI,
+    STEPS,
+    SPLIT,
+    TICK_STEPS,
+    LATENCY,
+    AMPERE,
+    DELAYS,
+    LATE_POSITION,
+    LATE_VELOCITY,
+    LATE_CURRENT,
+    LATE_TACH,
+    SETTINGS,
+) = range(13)
 HALF = 1 << 15
 ADC_TOP = 1023  # 10 bit
 EFFORT_SCALE = 3000  # log: effort in 1/3000 of the supply

@@ -53,13 +53,11 @@ def stage(
     half = 0.5 * rise(w, voltage - emf - (winding + switch) * valley, closed)
     goal = (closed * (voltage + drop) - drop - emf) / resistance - half
     triangle = drawn = 0.0
-    if goal < 0.0:
+    if goal < 0.0:  # then back-EMF and drop together oppose the current
         peak = rise(w, voltage - emf, closed)
-        if peak > 0.0:
-            back = emf + drop + 0.5 * winding * peak
-            fall = min(1.0 - closed, peak / (w[at.PULSE] * back)) if back > 0.0 else 1.0 - closed
-            drawn = 0.5 * peak * closed
-            triangle = drawn + 0.5 * peak * fall
+        fall = min(1.0 - closed, peak / (w[at.PULSE] * (emf + drop + 0.5 * winding * peak)))
+        drawn = 0.5 * peak * closed
+        triangle = drawn + 0.5 * peak * fall
         if valley <= 0.0:
             return 0.0, triangle, drawn
     slow = w[at.INDUCTANCE] / (resistance * h)

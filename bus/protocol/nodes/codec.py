@@ -43,7 +43,7 @@ class FrameCodec:
             raw = round((values.get(name, 0) - offset) / scale)
             if not low <= raw <= high:
                 clip()
-                raw = low if raw < low else high
+                raw = min(max(raw, low), high)
             word |= (raw & ((1 << length) - 1)) << start
         return word.to_bytes(8, "little")
 
@@ -55,7 +55,7 @@ class FrameCodec:
             raw = word >> start & ((1 << length) - 1)
             if signed and raw >> (length - 1):
                 raw -= 1 << length
-            values[name] = raw * scale + offset if scale != 1 or offset else raw
+            values[name] = raw * scale + offset
         return values
 
 

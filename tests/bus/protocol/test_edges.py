@@ -7,16 +7,8 @@ from bus.protocol.database import database
 from bus.protocol.nodes import DOME
 from bus.protocol.position import AGE_UNIT_NS
 from bus.protocol.saturate import bounds
-from bus.protocol.serial import (
-    NO_SETPOINT,
-    PACKET_NS,
-    SAMPLE_NS,
-    SAMPLES,
-    STAMP_UNIT_NS,
-    PacketDecoder,
-    pack_packet,
-    packet_bytes,
-)
+from bus.protocol.scales import COUNTS_PER_TURN, STEPS_PER_TURN, rate_q16
+from bus.protocol.serial import PacketDecoder, pack_packet, packet_bytes
 
 
 class Told:
@@ -123,12 +115,6 @@ def test_the_age_counts_4_us() -> None:
     assert (age.scale, age.unit, AGE_UNIT_NS) == (1, "4us", 4000)
 
 
-def test_a_packets_times_are_the_papers() -> None:
-    """Row L3: every 250 ms the last 25 samples, taken at 10 ms; the stamp counts 100 µs."""
-    assert (SAMPLES, SAMPLE_NS, PACKET_NS, STAMP_UNIT_NS) == (25, 10_000_000, 250_000_000, 100_000)
-    assert NO_SETPOINT == -0x8000_0000
-
-
 def test_a_packet_byte_by_byte() -> None:
     """Sync AA 55, device, sequence and time stamp modulo their widths, samples, CRC-16 over all but the sync:
     by long division, polynomial 0x1021, initial 0xFFFF."""
@@ -192,3 +178,15 @@ def test_noise_without_a_sync_is_counted_at_once_and_not_kept() -> None:
     assert decoder.feed(bytes(1000)) == [] and decoder.skipped_bytes == 1000
     assert decoder.feed(b"\x01\xaa") == [] and decoder.skipped_bytes == 1001  # half a sync may go on
     assert len(decoder.feed(GOOD[1:])) == 1 and decoder.skipped_bytes == 1001
+
+
+def test_an_axis_scales_are_the_papers() -> None:
+    """Encoder 4.608e6 on a roller 735:30; RCN 829 of 29 bits; 200 ticks a second: 15 arcsec/s are 6.533."""
+    assert COUNTS_PER_TURN == 4_608_000 * 735 // 30 and STEPS_PER_TURN == 2**29
+    assert rate_q16(15.0) == round(15 / 1_296_000 * 4_608_000 * 24.5 / 200 * 2**16) == 428_169
+
+
+@pytest.mark.parametrize("sample", [(1, 2), (1, 2, 3, 4)])
+def test_a_sample_of_another_length_is_not_cut_to_fit(sample: tuple[int, ...]) -> None:
+    with pytest.raises(ValueError, match="zip"):
+        pack_packet(p.Device.FOCUS, 0, 0, [sample] * 25)

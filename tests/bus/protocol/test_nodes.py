@@ -75,6 +75,53 @@ def test_final_dbc_says_what_the_declarations_say() -> None:
     assert facts(load_file(DBC_PATH, strict=True)) == facts(documented(DEVICES))
 
 
+def test_frames_of_a_declared_board_are_moved_to_its_type() -> None:
+    """docs/reference/protocol.md: bases 0x080, 0x100, 0x200, 0x700; the dome is 0x71."""
+    frames = {message.name: message for message in messages_of(DOME)}
+    assert [(frame.frame_id, frame.length, frame.cycle_time) for frame in frames.values()] == [
+        (0xF1, 8, None), (0x171, 8, None), (0x271, 8, 100), (0x771, 8, 1000),
+    ]  # fmt: skip
+    named = {1: "PING", 2: "GET_PARAMETER", 3: "SET_PARAMETER"}
+    own = {0x40: "DOME_GOTO", 0x41: "DOME_SHUTTER", 0x42: "DOME_STOP"}
+    choices = {
+        "Device": {0x71: "DOME"},
+        "Opcode": named | own,
+        "GetParameter_Number": {1: "TOLERANCE_CENTIDEGREES", 2: "CLOSE_IN_BAD_WEATHER"},
+        "SetParameter_Number": {1: "TOLERANCE_CENTIDEGREES", 2: "CLOSE_IN_BAD_WEATHER"},
+    }
+    for name, frame in frames.items():
+        to_board = name == "DOME_COMMAND"
+        assert frame.senders == ["GATEWAY" if to_board else "DOME"]
+        for signal in frame.signals[1:]:
+            assert signal.receivers == ["DOME" if to_board else "GATEWAY"], signal.name
+        device = frame.signals[0]
+        assert (device.start, device.length, device.raw_initial) == (0, 8, 0x71)
+        assert device.minimum == device.maximum == 0x71
+        for signal in frame.signals:
+            told = signal.choices and {number: str(word) for number, word in signal.choices.items()}
+            assert told == choices.get(signal.name) or signal.name in ("Result", "State"), signal.name
+    assert [each.name for each in frames["DOME_COMMAND"].signals if each.multiplexer_ids == [0x40]] == [
+        "Goto_Azimuth"
+    ]
+
+
+def test_a_summary_of_a_declared_board_has_its_kind(tmp_path: Path) -> None:
+    file = tmp_path / "x.dbc"
+    file.write_text(
+        'VERSION ""\nBU_: GATEWAY NODE\n'
+        'BO_ 512 X: 8 NODE\n SG_ A : 8|8@1+ (1,0) [0|1] "" GATEWAY\n'
+        'BO_ 768 Y: 8 NODE\n SG_ B : 16|8@1+ (1,0) [0|1] "" GATEWAY\n'
+        'BA_DEF_ BO_ "GenMsgCycleTime" INT 0 65535;\nBA_DEF_DEF_ "GenMsgCycleTime" 0;\n'
+        'BA_ "GenMsgCycleTime" BO_ 512 250;\nBA_ "GenMsgCycleTime" BO_ 768 100;\n'
+    )
+    kind = Kind("X", {"X": 0x7A}, file)
+    assert [message.name for message in own_messages(kind)] == ["Y", "X"], "the shorter period first"
+    summary = next(message for message in messages_of(kind) if message.frame_id == 0x37A)
+    assert FrameCodec(summary).pack({"B": 1}) == bytes([0x7A, 0xF3, 1, 0, 0, 0, 0, 0])
+    byte = summary.get_signal_by_name("Kind")
+    assert (byte.start, byte.length, byte.raw_initial) == (8, 8, 0xF3)
+
+
 def test_declared_devices_and_opcodes_know_what_they_are_and_are_not_counted() -> None:
     assert (len(Device), len(DEVICES)) == (11, 18)
     dome, goto = DOME.device("DOME"), next(iter(arguments_of(DOME)))
@@ -100,6 +147,8 @@ def test_written_and_declared_ones_go_through_a_pipe(each: Device | Opcode) -> N
         ("lower", {"lower": 0x7A}, "capitals"),
         ("OTHER", {"DOME_2": 0x7A}, "are called OTHER"),
         ("OTHER", {"OTHER": 0x80}, "not within"),
+        ("OTHER", {"OTHER": 0}, "not within"),
+        ("FOCUS", {"FOCUS": 0x7A}, "is taken"),
         ("OTHER_X", {"OTHER_X": 0x7A}, "without an underscore"),
         ("OTHER", {"OTHER": 0x71}, "is taken"),
         ("OTHER", {"OTHER": 0x11}, "is taken"),
@@ -112,6 +161,11 @@ def test_a_declaration_that_cannot_be_is_one_line(name: str, nodes: dict[str, in
     assert "\n" not in str(error.value)
 
 
+@pytest.mark.parametrize("number", [0x01, 0x7F])
+def test_a_declaration_may_have_any_free_type(number: int) -> None:
+    check_kind(Kind("OTHER", {"OTHER": number}, Path("none.dbc")), KINDS)
+
+
 GOOD = 'BO_ 512 X: 8 NODE\n SG_ A : 8|8@1+ (1,0) [0|1] "" GATEWAY\n'
 
 
@@ -122,6 +176,7 @@ GOOD = 'BO_ 512 X: 8 NODE\n SG_ A : 8|8@1+ (1,0) [0|1] "" GATEWAY\n'
         (GOOD, "GenMsgCycleTime"),
         (GOOD.replace("512", "513"), "513"),
         (GOOD.replace("X: 8", "X: 4"), "4 bytes"),
+        (GOOD + ' SG_ B : 12|8@1+ (1,0) [0|1] "" GATEWAY\n', "no DBC: .*overlapping"),
     ],
 )
 def test_a_dbc_that_cannot_be_is_one_line(tmp_path: Path, text: str, complaint: str) -> None:
@@ -155,6 +210,15 @@ def test_an_offset_missing_values_and_fields_without_limits() -> None:
     assert codec.pack({"T": 1e3, "S": 200}, lambda: told.append(1)) == bytes([0, 255, 127, 0, 0, 0, 0, 0])
     assert codec.pack({"T": -41, "S": -200}, lambda: told.append(1)) == bytes([0, 0, 128, 0, 0, 0, 0, 0])
     assert len(told) == 4
+
+
+def test_limits_are_in_the_fields_unit() -> None:
+    """By hand: T = 0.5 raw - 40 from -30 to 10 is raw 20 to 100."""
+    codec = FrameCodec(
+        load_string(HAND.format(' SG_ T : 16|8@1+ (0.5,-40) [-30|10] "" B\n'), "dbc").messages[0]
+    )
+    sent = [codec.pack({"T": value})[2] for value in (-31.0, -30.0, 10.0, 10.5)]
+    assert sent == [20, 20, 100, 100]
 
 
 HAND = (

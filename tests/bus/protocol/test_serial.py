@@ -7,11 +7,16 @@ from hypothesis import strategies as st
 from bus.protocol import Device
 from bus.protocol.serial import (
     MEANINGS,
+    NO_SETPOINT,
+    PACKET_NS,
+    SAMPLE_NS,
     SAMPLES,
+    STAMP_UNIT_NS,
     SYNC,
     AxisSample,
     PacketDecoder,
     SerialError,
+    ahead_bytes,
     fields,
     pack_packet,
     packet_bytes,
@@ -107,3 +112,20 @@ def test_L3_fields_stand_one_behind_the_other(device: int, types: tuple[str, ...
     assert packet_bytes(device) == 10 + SAMPLES * at
     if device == 0xEE:
         assert [name for name, _, _ in found] == [f"byte{k}" for k in range(1, 8)]
+
+
+def test_a_packets_times_are_the_papers() -> None:
+    """Row L3: every 250 ms the last 25 samples, taken at 10 ms; the stamp counts 100 µs."""
+    assert (SAMPLES, SAMPLE_NS, PACKET_NS, STAMP_UNIT_NS) == (25, 10_000_000, 250_000_000, 100_000)
+    assert NO_SETPOINT == -0x8000_0000
+
+
+@pytest.mark.parametrize(("device", "size"), [(Device.AXIS_RA, 24), (Device.POSITION_RA, 4), (0x41, 6)])
+def test_all_but_the_last_sample_and_the_crc_leave_ahead(device: int, size: int) -> None:
+    """Sync 2, head 6, then 24 samples; with the last one and the CRC the packet is whole."""
+    assert ahead_bytes(device) == 2 + 6 + 24 * size == packet_bytes(device) - size - 2
+
+
+def test_every_field_has_a_meaning_and_no_meaning_is_without_one() -> None:
+    devices = (Device.AXIS_RA, Device.POSITION_RA, Device.FOCUS, 0x7F)
+    assert set(MEANINGS) == {name for device in devices for name, _, _ in fields(device)}

@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
+from plant.kernels import layout as at
 from plant.kernels.friction import relax, steady, stribeck, torque
 from plant.units import ARCSEC
 from tests.plant.bench import lugre
@@ -132,3 +133,29 @@ def test_P5_update_agrees_with_a_stiff_solver() -> None:
         w = speed_at((k + 0.5) * dt)
         z = relaxed(z, w, g_of(w, TELESCOPE, 0), dt)
     assert z == pytest.approx(reference, rel=2e-3)
+
+
+@pytest.mark.parametrize(("rate", "decay", "sigma1"), [
+    (0.5, 0.0, 3.0), (0.5, 1.0, 3.0 * exp(-0.25)), (-2.0, 1.0, 3.0 * exp(-4.0)), (0.5, 0.25, 3.0 * exp(-4.0)),
+])  # fmt: skip
+def test_P5_torque_by_hand_with_a_decaying_bristle_damping(rate: float, decay: float, sigma1: float) -> None:
+    """sigma0 z + sigma1 (w - |w| z / g) + sigma2 w, behind other numbers of an array."""
+    w = np.concatenate([[7.0], lugre(10.0, 3.0, 4.0, 1.0, 2.0, 1.0)])
+    w[1 + at.F_DECAY] = decay
+    expected = 10.0 * 0.1 + sigma1 * (rate - abs(rate) * 0.1 / 0.125) + 4.0 * rate
+    assert torque_of(rate, 0.1, 0.125, w, 1) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize(("exponent", "power"), [(2.0, 9.0), (1.0, 3.0), (0.5, 3.0**0.5), (3.0, 27.0)])
+def test_P5_deflection_of_steady_sliding_by_hand(exponent: float, power: float) -> None:
+    for before in (1.0, 2.0):  # other numbers of the array
+        own = lugre(10.0, 3.0, 4.0, 1.0, 2.0, 0.5, exponent)
+        w = np.concatenate([np.full(at.FRICTION_SIZE, before), own])
+        for rate in (1.5, -1.5):
+            assert g_of(rate, w, at.FRICTION_SIZE) == pytest.approx((1.0 + exp(-power)) / 10.0)
+
+
+def test_P5_at_rest_a_bristle_stays_and_a_sliding_one_tends_to_its_deflection() -> None:
+    assert relaxed(1e-17, 0.0, 0.125, 1.0) == 1e-17 and steady_of(0.0, REFERENCE, 0) == 0.0
+    assert relaxed(0.3, 2.0, 0.5, 0.25) == pytest.approx(0.5 - 0.2 * exp(-1.0))
+    assert relaxed(0.3, -2.0, 0.5, 0.25) == pytest.approx(-0.5 + 0.8 * exp(-1.0))

@@ -9,7 +9,7 @@ from plant import model
 from plant.compiled import Floats
 from plant.gears import RATIO
 from plant.kernels import layout as at
-from plant.kernels.stage import peak_current, stage
+from plant.kernels.stage import closed_share, peak_current, rail, stage
 from plant.model import PlantModel
 from plant.plant import Plant
 from plant.units import ARCSEC
@@ -129,6 +129,68 @@ def test_P4_a_short_pulse_drives_next_to_nothing_through_a_diode() -> None:
     _, mean, _ = settled(row("fitted"), 45 / STEPS, 24.0, 0.0)
     on, drop, inductance, period = 0.75e-6, 0.7, 2.72e-3, 50e-6
     assert mean == pytest.approx(24.0 * 24.7 * on**2 / (2 * drop * inductance * period), rel=0.02)
+
+
+def by_hand() -> Floats:
+    """24 V, 2 ohm and 0.5 ohm of the switch, 5 mH, a drop of 0.7 V, 20 kHz: 0.01 A/V in a period."""
+    w = np.zeros(at.WIDTH)
+    w[at.VOLTAGE], w[at.WINDING], w[at.RESISTANCE], w[at.INDUCTANCE], w[at.PULSE] = 24.0, 2.0, 2.5, 5e-3, 0.01
+    w[at.DIODE_DROP] = 0.7
+    return w
+
+
+@pytest.mark.parametrize(("steps", "share"), [(300, 0.1), (12, 0.004), (6, 0.001), (3, 0.00025), (0, 0.0)])
+def test_P4_a_pulse_of_less_than_200_ns_is_a_triangle(steps: int, share: float) -> None:
+    """12 steps of 3000 are 200 ns; half of them reach half as high, for half as long."""
+    assert closed_share(by_hand(), steps / STEPS) == pytest.approx(share)
+
+
+def test_P4_the_rail_sags_by_what_both_axes_drew() -> None:
+    w = by_hand()
+    w[at.SUPPLY_RESISTANCE], w[at.SUPPLY_CURRENT], w[at.OTHERS_SAG] = 0.5, 2.0, 0.25
+    assert rail(w) == 22.75
+
+
+@pytest.mark.parametrize(("valley", "duty", "heated"), [(1.0, 0.5, 0.5), (0.0, 0.2, 0.0)])
+def test_P4_a_current_that_never_ends_by_hand(valley: float, duty: float, heated: float) -> None:
+    """3 V of EMF: with the switch closed it climbs by what 24 V leave over.
+
+    Mean volts of a period less those of the resistance are L di.
+    """
+    h, volts, ohm = 1e-3, duty * 24.7 - 3.7, 2.0 + heated + duty * 0.5
+    goal = volts / ohm - 0.5 * (21.0 - (2.5 + heated) * valley) * duty * 0.01
+    end, mean, drawn = stage(by_hand(), valley, duty, 24.0, 3.0, heated, h)
+    assert end == pytest.approx(goal + (valley - goal) * np.exp(-ohm * h / 5e-3))
+    assert (end - valley) * 5e-3 == pytest.approx(h * (volts - ohm * mean))
+    assert drawn == pytest.approx(duty * mean)
+
+
+@pytest.mark.parametrize(("duty", "emf", "mean", "drawn"), [
+    (0.05, 10.0, 0.0035 * (0.05 + 0.007 / (0.01 * 10.707)), 0.0035 * 0.05),  # 14 V for 2.5 us: 7 mA, and down
+    (0.5, 11.6, 0.5 * 0.062, 0.5 * 0.062 * 0.5),  # just about the whole period
+    (0.5, 23.5, 0.00125 * (0.5 + 0.0025 / 0.242025), 0.00125 * 0.5),  # half a volt drives it
+    (0.5, 30.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0),  # nothing drives it
+])  # fmt: skip
+def test_P4_a_current_that_ends_in_every_period_by_hand(
+    duty: float, emf: float, mean: float, drawn: float
+) -> None:
+    assert stage(by_hand(), 0.0, duty, 24.0, emf, 0.0, 1e-3) == pytest.approx((0.0, mean, drawn))
+
+
+@pytest.mark.parametrize("duty", [0.0, 0.05])
+def test_P4_a_current_that_ends_within_a_step(duty: float) -> None:
+    """Valley of 0.5 A against 10 V of EMF: by its own exponential to nothing, then as if it began so."""
+    h, ohm = 1e-3, 2.0 + duty * 0.5
+    half = 0.5 * (24.0 - 10.0 - 2.5 * 0.5) * duty * 0.01
+    goal, tau = (duty * 24.7 - 10.7) / ohm - half, 5e-3 / ohm
+    _, after, supply = stage(by_hand(), 0.0, duty, 24.0, 10.0, 0.0, h)
+    t = (np.arange(100_000) + 0.5) * h / 100_000
+    valleys = goal + (0.5 - goal) * np.exp(-t / tau)
+    flows = valleys > 0.0
+    mean = np.where(flows, valleys + half, after).mean()
+    drawn = np.where(flows, duty * (valleys + half), supply).mean()
+    assert 0.1 < flows.mean() < 0.9
+    assert stage(by_hand(), 0.5, duty, 24.0, 10.0, 0.0, h) == pytest.approx((0.0, mean, drawn), rel=1e-4)
 
 
 def test_P4_a_plant_without_a_declared_drop_has_no_stage() -> None:
