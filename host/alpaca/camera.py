@@ -5,7 +5,7 @@ from host.alpaca.errors import INVALID_OPERATION, INVALID_VALUE, AlpacaError, wi
 from host.alpaca.parameters import Parameters
 from host.alpaca.slewing import pulse
 from host.camera.camera import Camera, Frame, Order, State
-from host.camera.light import Window
+from host.camera.models import Window
 from host.camera.readout import Counts
 from host.telescope import AsyncDesk
 

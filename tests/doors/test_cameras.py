@@ -10,7 +10,7 @@ import pytest
 
 from bus.can import Frame
 from host.camera.camera import Camera, Order, State
-from host.camera.light import Window
+from host.camera.models import Window
 from host.camera.stars import from_file
 from host.sky.observed import observe
 from scenarios.doors.making import check

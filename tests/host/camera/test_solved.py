@@ -9,8 +9,7 @@ import pytest
 
 from bus.units import ARCSEC_PER_RAD
 from host.camera.camera import Order, expose
-from host.camera.light import Window
-from host.camera.models import GUIDE, MAIN, CameraModel, Look
+from host.camera.models import GUIDE, MAIN, CameraModel, Look, Window
 from host.camera.place import catalogued
 from host.camera.seeing import Wander
 from host.camera.stars import SyntheticSky, separation
