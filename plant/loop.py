@@ -144,14 +144,10 @@ def _ticks(setpoint: float | Floats | None, rows: int) -> Floats:
 
 
 def _column(given: float | Floats | None, rows: int, absent: float, name: str) -> Floats:
-    if given is None:
-        return np.full(rows, absent)
-    values = np.asarray(given, dtype=float)
-    if values.ndim == 0:
-        return np.full(rows, float(values))
-    if values.shape != (rows,):
+    values = np.asarray(absent if given is None else given, dtype=float)
+    if values.shape not in ((), (rows,)):
         raise ValueError(f"simulate: {name} has {values.size} values for {rows} samples")
-    return values
+    return np.broadcast_to(values, (rows,))
 
 
 def _between(effort: Floats, model: PlantModel) -> Floats:
