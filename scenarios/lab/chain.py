@@ -44,17 +44,12 @@ class Chain:
         self._ends = ends
         self._guards = guards
         model = network.plant.model
-        self._fastest = {
-            axis: _STRONGEST
-            * model.supply.voltage.si
-            / (getattr(model.axes, axis).motor.torque_constant.si * RATIO)
-            for axis in ends
-        }
+        volts, motors = _STRONGEST * model.supply.voltage.si, {a: getattr(model.axes, a).motor for a in ends}
+        self._fastest = {axis: volts / (each.torque_constant.si * RATIO) for axis, each in motors.items()}
         self._pressed = 0
         self._standing: tuple[str, ...] = ()
-        self._motion = {
-            name: MEASUREMENT_BASE + network.boards[name].device_type for name in map(board_of, ends)
-        }
+        boards = [network.boards[board_of(axis)] for axis in ends]
+        self._motion = {each.name: MEASUREMENT_BASE + each.device_type for each in boards}
         self._off: set[str] = set()
         self.open = False
         self.told: Callable[[int, str], None] | None = None
