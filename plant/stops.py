@@ -25,6 +25,6 @@ def with_stops(model: PlantModel, soft_rad: Mapping[str, tuple[float, float]]) -
     for name, (low, high) in soft_rad.items():
         axis: AxisModel = getattr(axes, name)
         if axis.stops is None:
-            ends = (Number(each, "rad", source) for each in (low - BEYOND_RAD, high + BEYOND_RAD))
+            ends = Number(low - BEYOND_RAD, "rad", source), Number(high + BEYOND_RAD, "rad", source)
             axes = replace(axes, **{name: replace(axis, stops=Stops(*ends, STIFFNESS, DAMPING))})
     return replace(model, axes=axes)
