@@ -105,7 +105,7 @@ class Alpaca:
             return PlainTextResponse(str(error), 400)
 
     def described(self) -> dict[str, str]:
-        """What the management API tells of the server."""
+        """The server, as the management API describes it."""
         return {
             "ServerName": "schmidt", "Manufacturer": "schmidt",
             "ManufacturerVersion": importlib.metadata.version("schmidt"),
@@ -113,7 +113,7 @@ class Alpaca:
         }  # fmt: skip
 
     def configured(self) -> list[dict[str, object]]:
-        """What it tells of the devices."""
+        """The devices, as the management API lists them."""
         return [
             {
                 "DeviceName": device.name, "DeviceType": type(device).__name__.removesuffix("Device"),
