@@ -133,6 +133,15 @@ class Client:
                 raise ClientError(f"{what}: not within {timeout_s:g} s")
             yield
 
+    @property
+    def now_s(self) -> float:
+        """Time of the tick, s."""
+        return self.now_ns * 1e-9
+
+    def latched_s(self, encoder: Device, reading: Position) -> float:
+        """When an encoder was read, s, as its frame's age tells."""
+        return (self.link.measured_ns[encoder] - reading.age * 4000) * 1e-9
+
     def motion(self, device: Device) -> Motion | None:
         """Last MOTION of an axis board."""
         data = self.link.measurements.get(device)

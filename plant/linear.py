@@ -13,6 +13,17 @@ ANGLE, RATE, BRISTLE, ROTOR_A, SPEED_A, TORQUE_A, ROTOR_B, SPEED_B, TORQUE_B, SI
 """States: axis angle and rate, bristle torque; angle and rate of rotor A, its motor's torque; B's as well."""
 
 
+def stepped(a: Floats, b: Floats, seconds: float) -> tuple[Floats, Floats]:
+    """Matrices of state and input over a time in which the input is held: exact."""
+    from scipy.linalg import expm  # of the extra `calibrate`
+
+    n = len(a)
+    both = np.zeros((n + b.shape[1], n + b.shape[1]))
+    both[:n, :n], both[:n, n:] = a, b
+    step = expm(both * seconds)
+    return step[:n, :n], step[:n, n:]
+
+
 def continuous(model: PlantModel, part: AxisModel, rate: float) -> tuple[Floats, Floats, Floats]:
     """Matrices at steady sliding with `rate`, rad/s above 0: state, motor A's duty, a torque on the axis.
 

@@ -27,32 +27,8 @@ ADC_COUNTS_PER_A = (
 )  # 0.1 ohm (paper), gain 8 and 5 V (hardware.md 2.3): 6.1 mA per count
 LATENCY_S = 65e-6  # 40 us of interrupt routine and half a PWM period of 50 us, as the axis board takes
 SAMPLE_S = 0.010  # paper, section 3.4
-LOG_COLUMNS = (
-    "t",
-    "setpoint",
-    "effort",
-    "position",
-    "velocity",
-    "adc_a",
-    "adc_b",
-    "tach_a",
-    "tach_b",
-    "aux",
-)
-TRUTH_COLUMNS = (
-    "angle",  # rad
-    "rate",  # rad/s
-    "current_a",  # A
-    "current_b",
-    "motor_angle_a",  # rad
-    "motor_angle_b",
-    "gear_torque_a",  # N m at the axis
-    "gear_torque_b",
-    "friction",  # N m
-    "bristle",  # rad
-    "duty_a",  # before this tick's new effort
-    "duty_b",
-)
+TRUTH_COLUMNS = (*at.TRUTH_COLUMNS[1:], "duty_a", "duty_b")
+"""As the plant has them (plant/grid.py), but for the time; duties are those before the tick's new effort."""
 
 
 @dataclass(frozen=True)
@@ -81,6 +57,10 @@ class LogColumns:
     tach_b: Floats
     aux: Floats
     truth: dict[str, Floats]
+
+
+LOG_COLUMNS = tuple(LogColumns.__annotations__)[:-1]
+"""All but the truth, in the log's order."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -164,14 +144,10 @@ def _ticks(setpoint: float | Floats | None, rows: int) -> Floats:
 
 
 def _column(given: float | Floats | None, rows: int, absent: float, name: str) -> Floats:
-    if given is None:
-        return np.full(rows, absent)
-    values = np.asarray(given, dtype=float)
-    if values.ndim == 0:
-        return np.full(rows, float(values))
-    if values.shape != (rows,):
+    values = np.asarray(absent if given is None else given, dtype=float)
+    if values.shape not in ((), (rows,)):
         raise ValueError(f"simulate: {name} has {values.size} values for {rows} samples")
-    return values
+    return np.broadcast_to(values, (rows,))
 
 
 def _between(effort: Floats, model: PlantModel) -> Floats:

@@ -77,15 +77,8 @@ def _plain(part: Any) -> Any:
         if part.parameters:
             effect["parameters"] = {k: _plain(v) for k, v in part.parameters.items()}
         if part.function is not None:
-            f = part.function
-            effect["function"] = {
-                "target": f.target,
-                "domain": f.domain,
-                "interpolation": f.interpolation,
-                "period": f.period,
-                "source": f.source,
-                "knots": [[x, y] for x, y in f.knots],
-            } | ({"motor": f.motor} if f.motor else {})
+            function = _plain(part.function)
+            effect["function"] = {name: each for name, each in function.items() if name != "motor" or each}
         return effect
     if isinstance(part, tuple):
         return [_plain(child) for child in part]

@@ -10,19 +10,9 @@ from typing import Final
 
 import numpy as np
 
+from plant import linear as of
 from plant.compiled import Floats
-from plant.linear import (
-    ANGLE,
-    BRISTLE,
-    RATE,
-    ROTOR_A,
-    ROTOR_B,
-    SPEED_A,
-    SPEED_B,
-    TORQUE_A,
-    TORQUE_B,
-    continuous,
-)
+from plant.linear import ANGLE, RATE
 from plant.parts import AxisModel, PlantModel
 from plant.units import ARCSEC
 
@@ -50,16 +40,16 @@ LOAD, LAST, SIZE = 6, 7, 8
 
 def lumped(model: PlantModel, part: AxisModel) -> tuple[Floats, Floats]:
     """Matrices of the first seven states and of the effort, PWM steps: the rotors turn alike."""
-    a, b, push = continuous(model, part, RATE_ARCSEC * ARCSEC)
+    a, b, push = of.continuous(model, part, RATE_ARCSEC * ARCSEC)
     whole, one = np.zeros((len(a), LOAD)), np.zeros((LOAD, len(a)))
     for place, (first, second, share) in enumerate(
-        ((ANGLE, ANGLE, 0.5), (RATE, RATE, 0.5), (BRISTLE, BRISTLE, 0.5), (ROTOR_A, ROTOR_B, 0.5),
-         (SPEED_A, SPEED_B, 0.5), (TORQUE_A, TORQUE_B, 1.0))
+        ((ANGLE, ANGLE, 0.5), (RATE, RATE, 0.5), (of.BRISTLE, of.BRISTLE, 0.5),
+         (of.ROTOR_A, of.ROTOR_B, 0.5), (of.SPEED_A, of.SPEED_B, 0.5), (of.TORQUE_A, of.TORQUE_B, 1.0))
     ):  # fmt: skip
         whole[[first, second], place] = 1.0
         one[place, first] += share
         one[place, second] += share
-    whole[TORQUE_B, LOAD - 1] = 0.0
+    whole[of.TORQUE_B, LOAD - 1] = 0.0
     found = np.zeros((LAST, LAST))
     found[:LOAD, :LOAD], found[:LOAD, LOAD] = one @ a @ whole, (one @ push)[:, 0]
     return found, np.vstack([one @ b, np.zeros((1, 1))])
@@ -72,19 +62,12 @@ def designed(
 
     They are moved by correction times what a reading was not expected to be.
     """
-    from scipy.linalg import expm, solve_discrete_are  # of the extra `calibrate`
+    from scipy.linalg import solve_discrete_are  # of the extra `calibrate`
 
-    plant, effort = lumped(model, part)
-
-    def held(seconds: float) -> tuple[Floats, Floats]:
-        both = np.zeros((LAST + 1, LAST + 1))
-        both[:LAST, :LAST], both[:LAST, LAST:] = plant, effort
-        step = expm(both * seconds)
-        return step[:LAST, :LAST], step[:LAST, LAST:]
-
+    plant = lumped(model, part)
     a, b = np.zeros((SIZE, SIZE)), np.zeros((SIZE, 1))
-    rest, new = held(TICK_S - DELAY_S)
-    a[:LAST, :LAST], a[:LAST, LAST:], b[:LAST], b[LAST] = held(TICK_S)[0], rest @ held(DELAY_S)[1], new, 1.0
+    (whole, _), (rest, new), (_, last) = (of.stepped(*plant, s) for s in (TICK_S, TICK_S - DELAY_S, DELAY_S))
+    a[:LAST, :LAST], a[:LAST, LAST:], b[:LAST], b[LAST] = whole, rest @ last, new, 1.0
     keep = [n for n in range(SIZE) if n != LOAD]  # nobody controls the disturbance
     weight = np.zeros((SIZE - 1, SIZE - 1))
     weight[ANGLE, ANGLE] = position

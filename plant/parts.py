@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 from plant.units import to_si
 
@@ -197,8 +198,9 @@ class FocusModel:
     lvdt_nonlinearity: Number = field(metadata=bounds("1", -0.1, 0.1))
 
 
-def _typical(value: float, reason: str) -> Number:
-    return Number(value, "arcsec", f"ASSUMPTION: typical of a 50 cm mount; {reason}")
+def _typical(value: float, most: float, reason: str) -> Any:
+    source = f"ASSUMPTION: typical of a 50 cm mount; {reason}"
+    return field(default=Number(value, "arcsec", source), metadata=bounds("arcsec", -most, most))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -210,49 +212,20 @@ class MountErrors:
     drive does not feel a slope of 5e-6. The effect `encoder_eccentricity` is in the readings themselves.
     """
 
-    hour_angle_index: Number = field(
-        default=_typical(240.0, "a zero set by eye, IH"), metadata=bounds("arcsec", -3600.0, 3600.0)
+    hour_angle_index: Number = _typical(240.0, 3600.0, "a zero set by eye, IH")
+    declination_index: Number = _typical(-180.0, 3600.0, "a zero set by eye, ID")
+    polar_azimuth: Number = _typical(90.0, 3600.0, "aligned by drift, MA")
+    polar_altitude: Number = _typical(-120.0, 3600.0, "aligned by drift, ME")
+    collimation: Number = _typical(60.0, 1800.0, "0.3 mm at the plate holder's 1 m, CH")
+    non_perpendicularity: Number = _typical(-30.0, 1800.0, "bearings bored within 0.15 mm over 1 m, NP")
+    tube_flexure: Number = _typical(-20.0, 300.0, "a steel tube; below zero it droops, TF")
+    fork_flexure: Number = _typical(12.0, 300.0, "half of the tube's, FO")
+    axis_flexure: Number = _typical(8.0, 300.0, "held at both ends by the yoke, DAF")
+    hour_angle_eccentricity: Number = _typical(
+        1.0, 60.0, "the RCN 829's catalogue has ±1 arcsec; times sin h, HCES"
     )
-    declination_index: Number = field(
-        default=_typical(-180.0, "a zero set by eye, ID"), metadata=bounds("arcsec", -3600.0, 3600.0)
-    )
-    polar_azimuth: Number = field(
-        default=_typical(90.0, "aligned by drift, MA"), metadata=bounds("arcsec", -3600.0, 3600.0)
-    )
-    polar_altitude: Number = field(
-        default=_typical(-120.0, "aligned by drift, ME"), metadata=bounds("arcsec", -3600.0, 3600.0)
-    )
-    collimation: Number = field(
-        default=_typical(60.0, "0.3 mm at the plate holder's 1 m, CH"),
-        metadata=bounds("arcsec", -1800.0, 1800.0),
-    )
-    non_perpendicularity: Number = field(
-        default=_typical(-30.0, "bearings bored within 0.15 mm over 1 m, NP"),
-        metadata=bounds("arcsec", -1800.0, 1800.0),
-    )
-    tube_flexure: Number = field(
-        default=_typical(-20.0, "a steel tube; below zero it droops, TF"),
-        metadata=bounds("arcsec", -300.0, 300.0),
-    )
-    fork_flexure: Number = field(
-        default=_typical(12.0, "half of the tube's, FO"), metadata=bounds("arcsec", -300.0, 300.0)
-    )
-    axis_flexure: Number = field(
-        default=_typical(8.0, "held at both ends by the yoke, DAF"),
-        metadata=bounds("arcsec", -300.0, 300.0),
-    )
-    hour_angle_eccentricity: Number = field(
-        default=_typical(1.0, "the RCN 829's catalogue has ±1 arcsec; times sin h, HCES"),
-        metadata=bounds("arcsec", -60.0, 60.0),
-    )
-    declination_eccentricity: Number = field(
-        default=_typical(1.0, "as in hour angle; times sin dec, DCES"),
-        metadata=bounds("arcsec", -60.0, 60.0),
-    )
-    refraction: Number = field(
-        default=_typical(2.0, "4 % of 46 arcsec at 1950 m: air 10 K off; times tan z, TX"),
-        metadata=bounds("arcsec", -60.0, 60.0),
-    )
+    declination_eccentricity: Number = _typical(1.0, 60.0, "as in hour angle; times sin dec, DCES")
+    refraction: Number = _typical(2.0, 60.0, "4 % of 46 arcsec at 1950 m: air 10 K off; times tan z, TX")
 
 
 @dataclass(frozen=True)

@@ -21,15 +21,10 @@ def with_stops(model: PlantModel, soft_rad: Mapping[str, tuple[float, float]]) -
 
     soft_rad: soft limits (low, high) of each axis, rad on the scale of the absolute encoder.
     """
-    axes = model.axes
+    axes, source = model.axes, "ASSUMPTION: 5 deg beyond the soft limit"
     for name, (low, high) in soft_rad.items():
         axis: AxisModel = getattr(axes, name)
         if axis.stops is None:
-            axes = replace(axes, **{name: replace(axis, stops=_behind(low, high))})
+            ends = Number(low - BEYOND_RAD, "rad", source), Number(high + BEYOND_RAD, "rad", source)
+            axes = replace(axes, **{name: replace(axis, stops=Stops(*ends, STIFFNESS, DAMPING))})
     return replace(model, axes=axes)
-
-
-def _behind(low: float, high: float) -> Stops:
-    source = "ASSUMPTION: 5 deg beyond the soft limit"
-    ends = Number(low - BEYOND_RAD, "rad", source), Number(high + BEYOND_RAD, "rad", source)
-    return Stops(low=ends[0], high=ends[1], stiffness=STIFFNESS, damping=DAMPING)

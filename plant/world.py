@@ -12,7 +12,7 @@ from plant.effects.base import Switch
 from plant.gears import RATIO
 from plant.kernels import layout as at
 from plant.kernels.prepare import Numbers, prepare
-from plant.parts import AxisModel, Number, PlantModel, Stops
+from plant.parts import AxisModel, Number, PlantModel
 from plant.rows import number_from, values, write
 
 AXES = ("ra", "dec")
@@ -54,15 +54,11 @@ def build(model: PlantModel, seed: int, start_angles: Mapping[str, float]) -> ND
         if row[at.INERTIA] <= 0.0:
             raise ValueError(f"plant model: axes.{name}.effects: more swings than the axis' inertia")
         write(row, axis.effects, constants(axis), seed, name)
-        if axis.stops is not None:
-            _put(row, axis.stops)
+        if (stops := axis.stops) is not None:
+            low, high = stops.low.si, stops.high.si
+            row[at.STOP_MIDDLE], row[at.STOP_REACH] = 0.5 * (low + high), 0.5 * (high - low)
+            row[at.STOP_STIFFNESS], row[at.STOP_DAMPING] = stops.stiffness.si, stops.damping.si
     return world
-
-
-def _put(row: NDArray[np.float64], stops: Stops) -> None:
-    low, high = stops.low.si, stops.high.si
-    row[at.STOP_MIDDLE], row[at.STOP_REACH] = 0.5 * (low + high), 0.5 * (high - low)
-    row[at.STOP_STIFFNESS], row[at.STOP_DAMPING] = stops.stiffness.si, stops.damping.si
 
 
 def declared(model: PlantModel, axis: str) -> dict[str, Number]:

@@ -23,19 +23,11 @@ class DomeBoard(DeclaredBoard):
 
     KIND = DOME
     TABLE = (
-        Source(
-            "sample", priority=2, latency_cycles=12, cost_cycles=1500
-        ),  # 150 us: counter, switches, compare
-        Source(
-            "can", priority=1, latency_cycles=12, cost_cycles=600, level=True
-        ),  # 60 us: SPI, dispatch, SPI
+        # 150 us: counter, switches, compare; 60 us: SPI, dispatch, SPI
+        Source("sample", priority=2, latency_cycles=12, cost_cycles=1500),
+        Source("can", priority=1, latency_cycles=12, cost_cycles=600, level=True),
     )
-    PINS = (
-        Pin("encoder", "dome.encoder"),
-        Pin("shutter", "dome.shutter"),
-        Pin("turn", "dome.turn"),
-        Pin("slide", "dome.slide"),
-    )
+    PINS = tuple(Pin(name, f"dome.{name}") for name in ("encoder", "shutter", "turn", "slide"))
 
     def reset(self) -> None:
         """After power-up: nothing moves, no station heard."""
@@ -61,8 +53,11 @@ class DomeBoard(DeclaredBoard):
 
     def bad_weather(self, t_ns: int) -> bool:
         """Some station says so, or fell silent."""
+        return any(self.unsafe.values()) or self._silent(t_ns)
+
+    def _silent(self, t_ns: int) -> bool:
         now_ns = self.clock_ns(t_ns)
-        return any(self.unsafe.values()) or any(now_ns - each > _SILENCE_NS for each in self.heard.values())
+        return any(now_ns - each > _SILENCE_NS for each in self.heard.values())
 
     def measure(self, t_ns: int) -> Mapping[str, float]:
         """Every 100 ms: compare and switch."""
@@ -121,9 +116,7 @@ class DomeBoard(DeclaredBoard):
 
     def health(self) -> Health:
         """Adds a station that fell silent."""
-        now_ns = self.clock_ns(self.queue.now_ns)
-        silent = any(now_ns - each > _SILENCE_NS for each in self.heard.values())
-        return super().health() | (Health.STALE if silent else Health(0))
+        return super().health() | (Health.STALE if self._silent(self.queue.now_ns) else Health(0))
 
 
 def _station(message: object) -> bool:

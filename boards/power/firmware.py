@@ -23,10 +23,9 @@ class PowerBoard(DeclaredBoard):
 
     KIND = POWER
     TABLE = (
-        Source("sample", priority=2, latency_cycles=12, cost_cycles=1000),  # 100 us: two conversions, compare
-        Source(
-            "can", priority=1, latency_cycles=12, cost_cycles=600, level=True
-        ),  # 60 us: SPI, dispatch, SPI
+        # 100 us: two conversions, compare; 60 us: SPI, dispatch, SPI
+        Source("sample", priority=2, latency_cycles=12, cost_cycles=1000),
+        Source("can", priority=1, latency_cycles=12, cost_cycles=600, level=True),
     )
     PINS = (Pin("voltage", "supply.voltage"), Pin("current", "supply.current"), Pin("relay", "supply.relay"))
 

@@ -23,12 +23,9 @@ class WeatherBoard(DeclaredBoard):
 
     KIND = WEATHER
     TABLE = (
-        Source(
-            "sample", priority=2, latency_cycles=12, cost_cycles=2000
-        ),  # 200 us: three conversions, scaling
-        Source(
-            "can", priority=1, latency_cycles=12, cost_cycles=600, level=True
-        ),  # 60 us: SPI, dispatch, SPI
+        # 200 us: three conversions, scaling; 60 us: SPI, dispatch, SPI
+        Source("sample", priority=2, latency_cycles=12, cost_cycles=2000),
+        Source("can", priority=1, latency_cycles=12, cost_cycles=600, level=True),
     )
     PINS = (
         Pin("temperature", default=10.0, unit="degC"),

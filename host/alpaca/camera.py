@@ -5,7 +5,7 @@ from host.alpaca.errors import INVALID_OPERATION, INVALID_VALUE, AlpacaError, wi
 from host.alpaca.parameters import Parameters
 from host.alpaca.slewing import pulse
 from host.camera.camera import Camera, Frame, Order, State
-from host.camera.light import Window
+from host.camera.models import Window
 from host.camera.readout import Counts
 from host.telescope import AsyncDesk
 
@@ -41,16 +41,12 @@ class CameraDevice(Device):
             raise AlpacaError(INVALID_OPERATION, self.camera.error or "there is no frame; expose one first")
         return found
 
-    def done(self) -> int:
-        """Percent of the exposure."""
-        return int(self.camera.done * 100)
-
     def state(self) -> dict[str, object]:
         """Operational properties."""
         return {
             "CameraState": int(self.camera.state), "CCDTemperature": self.model.temperature_c,
             "ImageReady": self.camera.frame is not None, "IsPulseGuiding": self.now.pulse_guiding,
-            "PercentCompleted": self.done(),
+            "PercentCompleted": int(self.camera.done * 100),
         }  # fmt: skip
 
     def checked(self) -> Window:
@@ -68,10 +64,6 @@ class CameraDevice(Device):
 
 def _array(device: CameraDevice, _: Parameters) -> Counts:
     return device.frame.counts
-
-
-def _started(device: CameraDevice) -> str:
-    return device.camera.clock.iso(device.frame.start_s).rstrip("Z")
 
 
 def _set_window(name: str) -> Put:
@@ -140,7 +132,7 @@ CameraDevice.members = table(
     Member("ImageArray", _array),
     Member("ImageArrayVariant", _array),
     Member("LastExposureDuration", of(lambda d: d.frame.seconds)),
-    Member("LastExposureStartTime", of(_started)),
+    Member("LastExposureStartTime", of(lambda d: d.camera.clock.iso(d.frame.start_s).rstrip("Z"))),
     Member("MaxADU", of(lambda d: d.model.most_adu)),
     Member("PixelSizeX", of(lambda d: d.model.pixel_m * 1e6)),
     Member("PixelSizeY", of(lambda d: d.model.pixel_m * 1e6)),

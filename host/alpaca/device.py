@@ -101,27 +101,19 @@ class Device:
 
 
 async def _set_connected(device: Device, given: Parameters) -> None:
-    if given.truth("Connected"):
-        await _heard(device)
-    device.connected = given.truth("Connected")
+    await (_connect if given.truth("Connected") else _disconnect)(device, given)
 
 
 async def _connect(device: Device, _: Parameters) -> None:
-    await _heard(device)
-    device.connected = True
-
-
-async def _heard(device: Device) -> None:
     """Give boards that have just been switched on the moment they need: clients read as soon as they are
     connected. Boards that stay silent do not hold up the connection; each reading says so."""
-    loop = asyncio.get_running_loop()
-    end_s = loop.time() + _HEARD_S
-    while loop.time() < end_s:
+    for _look in range(round(_HEARD_S / _LOOK_S)):
         try:
             device.state()
-            return
+            break
         except AlpacaError:
             await asyncio.sleep(_LOOK_S)
+    device.connected = True
 
 
 async def _disconnect(device: Device, _: Parameters) -> None:
@@ -136,9 +128,7 @@ async def _command(_device: Device, given: Parameters) -> None:
 
 def _device_state(device: Device, _: Parameters) -> list[dict[str, object]]:
     stamp = device.desk.telescope.observatory.clock.iso(device.now.t_s)
-    return [{"Name": name, "Value": value} for name, value in device.state().items()] + [
-        {"Name": "TimeStamp", "Value": stamp}
-    ]
+    return [{"Name": name, "Value": value} for name, value in (device.state() | {"TimeStamp": stamp}).items()]
 
 
 COMMON = (

@@ -3,7 +3,8 @@
 import asyncio
 from collections.abc import Callable
 
-from host.alpaca.device import Device, Member, fixed, missing, missing_put, table, unknown
+from bus.protocol import Reply
+from host.alpaca.device import Device, Member, fixed, missing, missing_put, stated, table, unknown
 from host.alpaca.errors import within
 from host.alpaca.parameters import Parameters
 from host.procedures.dome import BOARD as DOME_BOARD
@@ -32,25 +33,18 @@ class DomeDevice(Device):
             raise unknown()
         return found
 
-    def shutter(self) -> int:
-        """ASCOM's number."""
-        now = self.reading()
+    def _shutter(self, now: dict[str, float]) -> int:
         if now["ShutterMoving"]:
             return _OPENING if self.desk.telescope.house.opening and not now["BadWeather"] else _CLOSING
         return _OPEN if now["Opened"] else _CLOSED if now["Closed"] else _BETWEEN
 
-    def slewing(self) -> bool:
-        """Dome or shutter move."""
-        now = self.reading()
-        return bool(now["Moving"] or now["ShutterMoving"])
-
     def state(self) -> dict[str, object]:
-        """Operational properties."""
-        return {
-            "Azimuth": self.reading()["Azimuth"], "ShutterStatus": self.shutter(), "Slewing": self.slewing(),
-        }  # fmt: skip
+        """Operational properties; dome or shutter slew."""
+        now = self.reading()
+        slewing = bool(now["Moving"] or now["ShutterMoving"])
+        return {"Azimuth": now["Azimuth"], "ShutterStatus": self._shutter(now), "Slewing": slewing}
 
-    async def command(self, act: Callable[[Telescope], Job[None]]) -> None:
+    async def command(self, act: Callable[[Telescope], Job[Reply]]) -> None:
         """Have the board do it; answered when its frames show it."""
         await self.run(act)
         taken_s, house = self.now.t_s, self.desk.telescope.house
@@ -78,10 +72,8 @@ DomeDevice.members = table(
     *(Member(name, missing(name)) for name in ("Altitude", "AtHome", "AtPark")),
     *(Member(name, put=missing_put(name)) for name in (
         "FindHome", "Park", "SetPark", "SlewToAltitude", "SyncToAzimuth")),
-    Member("Azimuth", lambda device, _: device.reading()["Azimuth"]),
-    Member("ShutterStatus", lambda device, _: device.shutter()),
+    *(Member(name, stated(name)) for name in ("Azimuth", "ShutterStatus", "Slewing")),
     Member("Slaved", lambda device, _: device.desk.telescope.house.slaved, _slave),
-    Member("Slewing", lambda device, _: device.slewing()),
     Member("AbortSlew", put=lambda device, _: device.command(lambda t: t.house.stop())),
     Member("CloseShutter", put=lambda device, _: device.command(lambda t: t.house.shutter(False))),
     Member("OpenShutter", put=lambda device, _: device.command(lambda t: t.house.shutter(True))),

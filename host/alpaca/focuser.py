@@ -1,10 +1,9 @@
 """IFocuserV4: the focus drive in half steps of 6.25 µm, 0 at the inner end."""
 
-from host.alpaca.device import Device, Member, fixed, missing, missing_put, table, unknown
+from host.alpaca.device import Device, Member, fixed, missing, missing_put, stated, table, unknown
 from host.alpaca.errors import within
 from host.alpaca.parameters import Parameters
 from host.procedures.focus import TRAVEL_HALF_STEPS
-from host.telescope import FocusState
 
 MAX_STEP = 2 * TRAVEL_HALF_STEPS
 STEP_UM = 6.25
@@ -24,25 +23,13 @@ class FocuserDevice(Device):
         "Free": lambda telescope: telescope.focuser.free(),
     }
 
-    def focus(self) -> FocusState:
-        """The last frame."""
-        if self.now.focus is None:
-            raise unknown()
-        return self.now.focus
-
-    @property
-    def position(self) -> int:
-        """Half steps from the inner end."""
-        return self.focus().half_steps + TRAVEL_HALF_STEPS
-
-    @property
-    def moving(self) -> bool:
-        """A move is under way."""
-        return self.focus().moving or self.desk.telescope.focuser.moving
-
     def state(self) -> dict[str, object]:
-        """Operational properties."""
-        return {"IsMoving": self.moving, "Position": self.position}
+        """Operational properties: a move is under way, half steps from the inner end."""
+        now = self.now.focus
+        if now is None:
+            raise unknown()
+        moving = now.moving or self.desk.telescope.focuser.moving
+        return {"IsMoving": moving, "Position": now.half_steps + TRAVEL_HALF_STEPS}
 
 
 async def _move(device: FocuserDevice, given: Parameters) -> None:
@@ -52,10 +39,9 @@ async def _move(device: FocuserDevice, given: Parameters) -> None:
 
 FocuserDevice.members = table(
     Member("Absolute", fixed(True)),
-    Member("IsMoving", lambda device, _: device.moving),
+    *(Member(name, stated(name)) for name in ("IsMoving", "Position")),
     Member("MaxIncrement", fixed(MAX_STEP)),
     Member("MaxStep", fixed(MAX_STEP)),
-    Member("Position", lambda device, _: device.position),
     Member("StepSize", fixed(STEP_UM)),
     Member("TempComp", fixed(False), missing_put("TempComp")),
     Member("TempCompAvailable", fixed(False)),

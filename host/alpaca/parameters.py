@@ -1,11 +1,15 @@
 """Parameters of a request: GET takes their names in any case, PUT exactly; unreadable is HTTP 400."""
 
 import math
+from collections.abc import Callable
+from contextlib import suppress
+from typing import TypeVar
 from urllib.parse import parse_qsl
 
 from host.alpaca.errors import Malformed
 
 _UINT32 = 1 << 32
+T = TypeVar("T", int, float)
 
 
 class Parameters:
@@ -34,25 +38,19 @@ class Parameters:
 
     def number(self, name: str) -> float:
         """A finite number."""
-        text = self.text(name)
-        try:
-            value = float(text)
-        except ValueError:
-            raise Malformed(f"{name} {text[:40]!r} is no number") from None
-        if not math.isfinite(value) or "_" in text or not text.isascii():
-            raise Malformed(f"{name} {text[:40]!r} is no number")
-        return value
+        return self._read(name, float, "number", math.isfinite)
 
     def integer(self, name: str) -> int:
         """A whole number of 32 bits."""
-        text = self.text(name).strip()
-        try:
-            value = int(text)
-        except ValueError:
-            raise Malformed(f"{name} {text[:40]!r} is no whole number") from None
-        if not -(1 << 31) <= value < 1 << 31 or "_" in text or not text.isascii():
-            raise Malformed(f"{name} {text[:40]!r} is no whole number of 32 bits")
-        return value
+        return self._read(name, int, "whole number of 32 bits", lambda value: -(1 << 31) <= value < 1 << 31)
+
+    def _read(self, name: str, kind: Callable[[str], T], what: str, fits: Callable[[T], bool]) -> T:
+        text = self.text(name)
+        with suppress(ValueError):
+            value = kind(text)
+            if fits(value) and "_" not in text and text.isascii():  # Python takes more than the standard
+                return value
+        raise Malformed(f"{name} {text[:40]!r} is no {what}")
 
     def truth(self, name: str) -> bool:
         """`True` or `False`, in any case."""

@@ -7,7 +7,7 @@ import importlib.metadata
 import itertools
 import socket
 import struct
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from starlette.applications import Starlette
@@ -53,9 +53,7 @@ class Alpaca:
         app = Starlette(
             routes=[
                 Route("/api/v1/{kind}/{number}/{member}", self._device, methods=["GET", "PUT"]),
-                Route("/management/apiversions", self._versions),
-                Route("/management/v1/description", self._description),
-                Route("/management/v1/configureddevices", self._configured),
+                *(Route(f"/management/{path}", self._management) for path in _MANAGEMENT),
                 Route("/setup", self._setup),
                 Route("/setup/v1/{kind}/{number}/setup", self._setup),
             ]
@@ -95,49 +93,44 @@ class Alpaca:
         return self._answer(transaction, value, number, message)
 
     def _answer(self, transaction: int, value: object, number: int = 0, message: str = "") -> Response:
-        body: dict[str, object] = {} if value is None else {"Value": value}
-        body |= {
-            "ClientTransactionID": transaction,
-            "ServerTransactionID": next(self._numbers) % (1 << 32),
-            "ErrorNumber": number,
-            "ErrorMessage": message,
-        }
-        return JSONResponse(body)
+        body = {} if value is None else {"Value": value}
+        return JSONResponse(body | _ended(transaction, next(self._numbers), number, message))
 
-    def _manage(self, request: Request, value: object) -> Response:
+    async def _management(self, request: Request) -> Response:
+        value = _MANAGEMENT[request.url.path.removeprefix("/management/")](self)
         try:
-            return self._answer(
-                Parameters(_query(request), exact=False).identifier("ClientTransactionID"), value
-            )
+            given = Parameters(_query(request), exact=False)
+            return self._answer(given.identifier("ClientTransactionID"), value)
         except Malformed as error:
             return PlainTextResponse(str(error), 400)
 
-    async def _versions(self, request: Request) -> Response:
-        return self._manage(request, [1])
-
-    async def _description(self, request: Request) -> Response:
-        value = {
-            "ServerName": "schmidt",
-            "Manufacturer": "schmidt",
+    def described(self) -> dict[str, str]:
+        """The server, as the management API describes it."""
+        return {
+            "ServerName": "schmidt", "Manufacturer": "schmidt",
             "ManufacturerVersion": importlib.metadata.version("schmidt"),
             "Location": "Nainital, 29°22′ N 79°27′ E",
-        }
-        return self._manage(request, value)
+        }  # fmt: skip
 
-    async def _configured(self, request: Request) -> Response:
-        value = [
+    def configured(self) -> list[dict[str, object]]:
+        """The devices, as the management API lists them."""
+        return [
             {
-                "DeviceName": device.name,
-                "DeviceType": type(device).__name__.removesuffix("Device"),
-                "DeviceNumber": int(device.number),
-                "UniqueID": device.unique_id,
+                "DeviceName": device.name, "DeviceType": type(device).__name__.removesuffix("Device"),
+                "DeviceNumber": int(device.number), "UniqueID": device.unique_id,
             }
             for device in self.devices.values()
-        ]
-        return self._manage(request, value)
+        ]  # fmt: skip
 
     async def _setup(self, _request: Request) -> Response:
         return Response("<!doctype html><title>schmidt</title><p>Nothing to set up.", media_type="text/html")
+
+
+_MANAGEMENT: dict[str, Callable[[Alpaca], object]] = {
+    "apiversions": lambda _: [1],
+    "v1/description": Alpaca.described,
+    "v1/configureddevices": Alpaca.configured,
+}
 
 
 def _query(request: Request) -> str:
@@ -160,6 +153,13 @@ def _text(said: bytes) -> str:
         raise Malformed("parameters are no UTF-8") from None
 
 
+def _ended(client: int, server: int, number: int = 0, message: str = "") -> dict[str, object]:
+    return {
+        "ClientTransactionID": client, "ServerTransactionID": server % (1 << 32), "ErrorNumber": number,
+        "ErrorMessage": message,
+    }  # fmt: skip
+
+
 MEDIA_TYPE = "application/imagebytes"
 _INT32, _UINT16 = 2, 8
 """ImageArrayElementTypes: what the client holds in the end, and what is sent."""
@@ -176,8 +176,4 @@ def picture(counts: Counts, accepted: str, client: int, server: int) -> Response
         )
         pixels = np.ascontiguousarray(columns, dtype="<u2").tobytes()
         return Response(head + pixels, media_type=MEDIA_TYPE)
-    body = {
-        "Type": _INT32, "Rank": 2, "Value": columns.tolist(), "ClientTransactionID": client,
-        "ServerTransactionID": server % (1 << 32), "ErrorNumber": 0, "ErrorMessage": "",
-    }  # fmt: skip
-    return JSONResponse(body)
+    return JSONResponse({"Type": _INT32, "Rank": 2, "Value": columns.tolist()} | _ended(client, server))

@@ -61,10 +61,14 @@ def _target(device: SlewingDevice, _: Parameters) -> Star:
     return star
 
 
-def _must_track(device: SlewingDevice, on: bool) -> None:
-    """Slews to the sky need tracking, slews to the ground need it off, none happens while parked."""
+def _unparked(device: Device) -> None:
     if device.now.parked:
         raise AlpacaError(PARKED, "the telescope is parked")
+
+
+def _must_track(device: SlewingDevice, on: bool) -> None:
+    """Slews to the sky need tracking, slews to the ground need it off, none happens while parked."""
+    _unparked(device)
     if device.now.tracking is not on:
         raise AlpacaError(INVALID_OPERATION, f"tracking has to be {'on' if on else 'off'} for this")
 
@@ -106,8 +110,7 @@ def _sync(where: Where) -> Put:
 
 
 async def _abort(device: SlewingDevice, _: Parameters) -> None:
-    if device.now.parked:
-        raise AlpacaError(PARKED, "the telescope is parked")
+    _unparked(device)
     await device.do(lambda t: t.drive.abort())
 
 
@@ -120,8 +123,7 @@ async def _move_axis(device: SlewingDevice, given: Parameters) -> None:
     """Axis 0: hour angle, positive west; axis 1: declination. Rates in °/s; 0 lets go."""
     axis = int(within("Axis", given.integer("Axis"), 0, 1))
     rate = within("Rate", given.number("Rate"), -FASTEST_DEG_S, FASTEST_DEG_S)
-    if device.now.parked:
-        raise AlpacaError(PARKED, "the telescope is parked")
+    _unparked(device)
     if rate:
         await device.do(lambda t: t.paddle.move(_AXES[axis], rate * 3600))
     else:
@@ -132,8 +134,7 @@ async def pulse(device: Device, given: Parameters) -> None:
     """PulseGuide, of a telescope or a camera."""
     direction = int(within("Direction", given.integer("Direction"), 0, 3))
     milliseconds = within("Duration", given.integer("Duration"), 0, _LONGEST_PULSE_MS)
-    if device.now.parked:
-        raise AlpacaError(PARKED, "the telescope is parked")
+    _unparked(device)
     await device.do(lambda t: t.paddle.pulse(_DIRECTIONS[direction], milliseconds / 1000))
 
 

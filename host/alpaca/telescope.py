@@ -10,7 +10,7 @@ from host.alpaca.parameters import Parameters
 from host.sky.apparent import Place, sidereal_time_rad
 from host.sky.observed import Observed
 from host.sky.tracks import SIDEREAL_ARCSEC_S
-from host.telescope import DriveRate
+from host.telescope import DriveRate, Observatory
 
 APERTURE_M = 0.5
 """Corrector of the 50/80 cm Schmidt (paper, section 1)."""
@@ -35,29 +35,30 @@ class TelescopeDevice(slewing.SlewingDevice):
         "EmergencyStop": lambda telescope: telescope.emergency_stop(),
     }
 
+    @property
+    def about(self) -> Observatory:
+        """Site, clock and mount."""
+        return self.desk.telescope.observatory
+
+    @property
+    def steps(self) -> tuple[int, int]:
+        """Readings of both encoders."""
+        ra, dec = self.now.ra.steps, self.now.dec.steps
+        if ra is None or dec is None:
+            raise unknown()
+        return ra, dec
+
     def place(self) -> Place:
         """Where it points, apparent."""
-        now = self.now
-        if now.ra.steps is None or now.dec.steps is None:
-            raise unknown()
-        about = self.desk.telescope.observatory
-        return about.apparent(now.ra.steps, now.dec.steps, now.ra.latched_s)
+        return self.about.apparent(*self.steps, self.now.ra.latched_s)
 
     def observed(self) -> Observed:
         """Where it points over the ground."""
-        now = self.now
-        if now.ra.steps is None or now.dec.steps is None:
-            raise unknown()
-        return self.desk.telescope.observatory.observed(now.ra.steps, now.dec.steps)
+        return self.about.observed(*self.steps)
 
     def sidereal_h(self) -> float:
         """Local apparent sidereal time."""
-        about = self.desk.telescope.observatory
-        return sidereal_time_rad(about.site, about.clock, self.now.t_s) * 12 / math.pi
-
-    def utc(self) -> str:
-        """The telescope's clock."""
-        return self.desk.telescope.observatory.clock.iso(self.now.t_s)
+        return sidereal_time_rad(self.about.site, self.about.clock, self.now.t_s) * 12 / math.pi
 
     def state(self) -> dict[str, object]:
         """Operational properties."""
@@ -75,7 +76,7 @@ _STATE: dict[str, Callable[[TelescopeDevice], object]] = {
     "SiderealTime": lambda device: device.sidereal_h(),
     "Slewing": lambda device: device.now.slewing,
     "Tracking": lambda device: device.now.tracking,
-    "UTCDate": lambda device: device.utc(),
+    "UTCDate": lambda device: device.about.clock.iso(device.now.t_s),
 }
 """What DeviceState tells, each of which is a property, too."""
 
@@ -163,6 +164,7 @@ _CAN = (
     "SetTracking", "Slew", "SlewAltAz", "SlewAltAzAsync", "SlewAsync", "Sync", "Unpark",
 )  # fmt: skip
 _CANNOT = ("FindHome", "SetPierSide", "SyncAltAz")
+_FIXED = missing_put("moving the telescope")
 
 TelescopeDevice.members = table(
     *(Member(f"Can{what}", fixed(True)) for what in _CAN),
@@ -184,12 +186,9 @@ TelescopeDevice.members = table(
     Member("GuideRateRightAscension", _guide(0), _set_guide(0, "GuideRateRightAscension")),
     Member("RightAscensionRate", _drift(0), _set_drift(0, "RightAscensionRate")),
     Member("SideOfPier", missing("SideOfPier"), missing_put("SideOfPier")),
-    Member("SiteElevation", of(lambda d: d.desk.telescope.observatory.site.height_m),
-           missing_put("moving the telescope")),
-    Member("SiteLatitude", of(lambda d: math.degrees(d.desk.telescope.observatory.site.latitude_rad)),
-           missing_put("moving the telescope")),
-    Member("SiteLongitude", of(lambda d: math.degrees(d.desk.telescope.observatory.site.longitude_rad)),
-           missing_put("moving the telescope")),
+    Member("SiteElevation", of(lambda d: d.about.site.height_m), _FIXED),
+    Member("SiteLatitude", of(lambda d: math.degrees(d.about.site.latitude_rad)), _FIXED),
+    Member("SiteLongitude", of(lambda d: math.degrees(d.about.site.longitude_rad)), _FIXED),
     Member("SlewSettleTime", missing("SlewSettleTime"), missing_put("SlewSettleTime")),
     Member("TargetDeclination", _target("target_dec_deg", "TargetDeclination"), _set_target_dec),
     Member("TargetRightAscension", _target("target_ra_h", "TargetRightAscension"), _set_target_ra),

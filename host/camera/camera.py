@@ -10,8 +10,8 @@ import numpy as np
 
 from bus.time import generator
 from host.camera.flat import flat
-from host.camera.light import Window, light
-from host.camera.models import CameraModel, Look
+from host.camera.light import light
+from host.camera.models import CameraModel, Look, Window
 from host.camera.readout import Counts, read_out
 from host.camera.seeing import Wander
 from host.camera.stars import Sky
@@ -159,11 +159,9 @@ def expose(
     seconds = (looks[-1].t_ns - looks[0].t_ns) * 1e-9
     electrons = np.full((window.height, window.width), model.dark_e_s * seconds)
     if order.lit:
-        response = flat(model, window.left, window.top, window.width, window.height)
-        electrons += response * light(model, looks, window, sky, site, clock, wander)
-    return Frame(
-        model=model, order=order, looks=looks, counts=read_out(model, electrons, order.binning, random)
-    )
+        electrons += flat(model, window) * light(model, looks, window, sky, site, clock, wander)
+    counts = read_out(model, electrons, order.binning, random)
+    return Frame(model=model, order=order, looks=looks, counts=counts)
 
 
 def _between(before: Look, after: Look, t_ns: int) -> Look:

@@ -2,13 +2,12 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from bus.units import ARCSEC_PER_RAD
 from host.camera.flat import cosines
-from host.camera.models import CameraModel, Look
+from host.camera.models import CameraModel, Look, Window
 from host.camera.place import catalogued, observed, plane, turning
 from host.camera.seeing import Wander, sigma_arcsec
 from host.camera.stars import Array, Sky, Stars
@@ -43,31 +42,16 @@ _ERF = (0.254829592, -0.284496736, 1.421413741, -1.453152027, 1.061405429)
 """Abramowitz and Stegun, 7.1.26: the error function to 1.5e-7. scipy has it, but is not of the base."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Window:
-    """A part of a detector, in its pixels; 0, 0 is at the upper left."""
-
-    left: int
-    top: int
-    width: int
-    height: int
-
-
 def light(
-    model: CameraModel,
-    looks: Sequence[Look],
-    window: Window,
-    sky: Sky,
-    site: Site,
-    clock: Clock,
+    model: CameraModel, looks: Sequence[Look], window: Window, sky: Sky, site: Site, clock: Clock,
     wander: Wander,
-) -> Array:
+) -> Array:  # fmt: skip
     """Expected electrons in the pixels of a window, rows from the top. looks: from opening to closing."""
     path = _sampled(model, looks, wander)
     seconds = (looks[-1].t_ns - looks[0].t_ns) * 1e-9
     background = model.zero_point_e_s * 10 ** (-0.4 * SKY_MAGNITUDE) * model.pixel_arcsec**2 * seconds
     # a pixel beside the axis sees less of the sky: its solid angle, by the cube of the cosine
-    image = background * cosines(model, window.left, window.top, window.width, window.height) ** 3
+    image = background * cosines(model, window) ** 3
     disc = _disc(model, looks)
     edge = len(disc) // 2
     sigma = sigma_arcsec(model.aperture_m) / model.pixel_arcsec

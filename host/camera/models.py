@@ -21,6 +21,16 @@ class Look(NamedTuple):
     focus_m: float = 0.0
 
 
+@dataclass(frozen=True, kw_only=True)
+class Window:
+    """A part of a detector, in its pixels; 0, 0 is at the upper left."""
+
+    left: int
+    top: int
+    width: int
+    height: int
+
+
 PHOTONS_M2_S = 8.8e9
 """Photons of a star of V = 0 above the air in the V band, per m² and s.
 

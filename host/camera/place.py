@@ -25,7 +25,9 @@ def observed(found: Stars, site: Site, clock: Clock, t_s: float) -> tuple[Array,
 
 def catalogued(look: Look, site: Site, clock: Clock) -> tuple[float, float]:
     """The ICRS place that is seen where the telescope looks, rad."""
-    return _catalogued(look.hour_angle_rad, look.declination_rad, site, clock, look.t_ns * 1e-9)
+    seen = look.hour_angle_rad, look.declination_rad, *clock.julian(look.t_ns * 1e-9)
+    ra, dec = quietly(erfa.atoc13, "H", *seen, *site.erfa)
+    return float(ra), float(dec)
 
 
 def plane(hour_angle: Array, declination: Array, look: Look) -> tuple[Array, Array]:
@@ -48,17 +50,9 @@ def turning(look: Look, step_rad: float, site: Site, clock: Clock) -> npt.NDArra
     for right, up in ((step_rad, 0.0), (0.0, step_rad)):
         c, s = math.cos(look.roll_rad), math.sin(look.roll_rad)
         west, north = right * c + up * s, up * c - right * s
-        ra, dec = _catalogued(
-            look.hour_angle_rad + west / math.cos(look.declination_rad), look.declination_rad + north,
-            site, clock, look.t_ns * 1e-9,
-        )  # fmt: skip
+        hour_angle_rad = look.hour_angle_rad + west / math.cos(look.declination_rad)
+        moved = look._replace(hour_angle_rad=hour_angle_rad, declination_rad=look.declination_rad + north)
+        ra, dec = catalogued(moved, site, clock)
         east = math.remainder(ra - ra0, 2 * math.pi) * math.cos(dec0)
         columns.append((math.degrees(east) / step_rad, math.degrees(dec - dec0) / step_rad))
     return np.array(columns).T
-
-
-def _catalogued(
-    hour_angle: float, declination: float, site: Site, clock: Clock, t_s: float
-) -> tuple[float, float]:
-    ra, dec = quietly(erfa.atoc13, "H", hour_angle, declination, *clock.julian(t_s), *site.erfa)
-    return float(ra), float(dec)

@@ -1,16 +1,17 @@
 """The stars of a field: a catalogue of one's own, or a synthetic sky with bright stars in their places."""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import astuple, replace
 from pathlib import Path
-from typing import Final, Protocol
+from typing import Final, NamedTuple, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
 from bus.time import generator
 from bus.units import ARCSEC_PER_RAD
-from host.sky.catalogue import STARS
+from host.sky.catalogue import STARS, Star
 from host.sky.listed import read
 
 Array = npt.NDArray[np.float64]
@@ -25,35 +26,26 @@ Source: the mean sky of Allen, Astrophysical Quantities (1973), section 117. Err
 """
 _CELL = math.radians(1.0)
 _MAS_PER_RAD = ARCSEC_PER_RAD * 1000
-_MAGNITUDES = {
-    "Alpheratz": 2.07, "Polaris": 1.97, "Mirfak": 1.79, "Aldebaran": 0.87, "Rigel": 0.18, "Capella": 0.08,
-    "Bellatrix": 1.64, "Elnath": 1.65, "Betelgeuse": 0.45, "Sirius": -1.44, "Castor": 1.58, "Procyon": 0.40,
-    "Pollux": 1.16, "Regulus": 1.36, "Dubhe": 1.81, "Denebola": 2.14, "Alioth": 1.76, "Spica": 0.98,
-    "Arcturus": -0.05, "Antares": 1.06, "Vega": 0.03, "Altair": 0.76, "Deneb": 1.25, "Fomalhaut": 1.17,
-}  # fmt: skip
-"""V of the stars to align on (Hipparcos, ESA 1997, field H5)."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Stars:
+class Stars(NamedTuple):
     """Places in the ICRS at J2000.0, rad; proper motions in rad/yr, that in RA without the cosine."""
 
     right_ascension: Array
     declination: Array
+    magnitude: Array
     pm_ra: Array
     pm_dec: Array
     parallax_arcsec: Array
-    magnitude: Array
 
     def near(self, right_ascension: float, declination: float, radius: float) -> "Stars":
         """Those within a radius, rad."""
-        return self.where(
-            separation(self.right_ascension, self.declination, right_ascension, declination) <= radius
-        )
+        away = separation(self.right_ascension, self.declination, right_ascension, declination)
+        return self.where(away <= radius)
 
     def where(self, kept: npt.NDArray[np.bool_]) -> "Stars":
         """Some of them."""
-        return Stars(**{name: column[kept] for name, column in vars(self).items()})
+        return Stars(*(column[kept] for column in self))
 
 
 class Sky(Protocol):
@@ -72,11 +64,7 @@ def separation(ra: Array, dec: Array, ra0: float, dec0: float) -> Array:
 def stars(ra: npt.ArrayLike, dec: npt.ArrayLike, magnitude: npt.ArrayLike) -> Stars:
     """Stars without proper motions."""
     columns = [np.asarray(each, dtype=float) for each in (ra, dec, magnitude)]
-    none = np.zeros_like(columns[0])
-    return Stars(
-        right_ascension=columns[0], declination=columns[1], magnitude=columns[2],
-        pm_ra=none, pm_dec=none, parallax_arcsec=none,
-    )  # fmt: skip
+    return Stars(*columns, *[np.zeros_like(columns[0])] * 3)
 
 
 def from_file(path: Path) -> Stars:
@@ -85,25 +73,14 @@ def from_file(path: Path) -> Stars:
     for each in found:
         if each.magnitude is None:
             raise ValueError(f"{path}: {each.star.name} has no magnitude; a camera needs one")
-    return stars(
-        [each.star.right_ascension_rad for each in found],
-        [each.star.declination_rad for each in found],
-        [each.magnitude or 0.0 for each in found],
-    )
+    return _of(replace(each.star, magnitude=each.magnitude) for each in found)
 
 
-def bright() -> Stars:
-    """The stars to align on, with their proper motions."""
-    named = list(STARS.values())
-    dec = np.array([star.declination_rad for star in named])
-    return Stars(
-        right_ascension=np.array([star.right_ascension_rad for star in named]),
-        declination=dec,
-        pm_ra=np.array([star.pm_ra_mas_yr for star in named]) / _MAS_PER_RAD / np.cos(dec),
-        pm_dec=np.array([star.pm_dec_mas_yr for star in named]) / _MAS_PER_RAD,
-        parallax_arcsec=np.array([star.parallax_mas for star in named]) / 1000,
-        magnitude=np.array([_MAGNITUDES[star.name] for star in named]),
-    )
+def _of(named: Iterable[Star]) -> Stars:
+    numbers = [astuple(star)[1:] for star in named]
+    ra, dec, pm_ra, pm_dec, parallax, _, magnitude = np.array(numbers, dtype=float).reshape(-1, 7).T
+    motion = pm_ra / _MAS_PER_RAD / np.cos(dec), pm_dec / _MAS_PER_RAD
+    return Stars(ra, dec, magnitude, *motion, parallax / 1000)
 
 
 class SyntheticSky:
@@ -112,7 +89,7 @@ class SyntheticSky:
     def near(self, right_ascension: float, declination: float, radius: float) -> Stars:
         """Synthetic and bright stars within a radius, all rad."""
         reach = radius + 2 * _CELL
-        found = [bright()]
+        found = [_of(STARS.values())]
         low, high = (math.floor((declination + side * reach) / _CELL) for side in (-1, 1))
         for band in range(low, high + 1):
             middle = (band + 0.5) * _CELL
@@ -122,8 +99,7 @@ class SyntheticSky:
             ra = (np.arange(count) + 0.5) * 2 * math.pi / count
             away = separation(ra, np.full(count, middle), right_ascension, declination)
             found += [self._cell(band, int(k), count) for k in np.flatnonzero(away <= reach)]
-        names = vars(found[0])
-        joined = Stars(**{name: np.concatenate([vars(each)[name] for each in found]) for name in names})
+        joined = Stars(*map(np.concatenate, zip(*found, strict=True)))
         return joined.near(right_ascension, declination, radius)
 
     def _cell(self, band: int, number: int, count: int) -> Stars:

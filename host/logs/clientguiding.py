@@ -68,12 +68,12 @@ class ClientGuiding:
         track = drive.pointing.track if drive.activity is Activity.TRACKING else None
         open_ = last is not None and last.end_s == math.inf
         if open_ and last is not None and track is not last.track:
-            last.end_s = self._now_s
+            last.end_s = self._telescope.client.now_s
             self.write()
         if isinstance(track, SkyTrack) and (last is None or last.end_s < math.inf):
             with self._lock:
                 self._sessions = [each for each in self._sessions if each.pulses]
-                self._sessions.append(_Session(track, self._now_s))
+                self._sessions.append(_Session(track, self._telescope.client.now_s))
 
     def frame(self, frame: Frame) -> None:
         """A frame that was read out. It counts when the guide camera saw one star all along."""
@@ -124,10 +124,6 @@ class ClientGuiding:
         with self._lock:
             if self._sessions and self._sessions[-1].end_s == math.inf:
                 self._sessions[-1].pulses.append(pulse)
-
-    @property
-    def _now_s(self) -> float:
-        return self._telescope.client.now_ns * 1e-9
 
 
 def _rows(session: _Session) -> list[Guided]:

@@ -74,15 +74,15 @@ def autoguide(
             next(each)
         yield
     for axis, opcode in enumerate(opcodes):  # a pulse may be under way
-        yield from client.ask(AXES[axis], opcode, rate_q16(followed.rates(_now_s(client))[axis]))
+        yield from client.ask(AXES[axis], opcode, rate_q16(followed.rates(client.now_s)[axis]))
     pointing.tracking = False
 
 
 def _driven(client: Client, axis: int, opcode: Opcode, track: SkyTrack) -> Procedure:
     """The star's rate and the pulses', for ever."""
-    shifting, sent = Shifting(track.shifted(_now_s(client))[axis], _now_s(client)), None
+    shifting, sent = Shifting(track.shifted(client.now_s)[axis], client.now_s), None
     while True:
-        now_s = _now_s(client)
+        now_s = client.now_s
         pulse = shifting.rate(track.shifted(now_s + TICK_S)[axis], now_s)
         rate = rate_q16(track.rates(now_s)[axis] + pulse)
         if rate == sent:
@@ -118,9 +118,9 @@ def _exposures(
         for axis, seconds in enumerate((ra_s, dec_s)):
             if seconds:
                 rate = math.copysign(GUIDE_ARCSEC_S, seconds)
-                tracks[axis].guide(Pulse(axis, rate, _now_s(client), abs(seconds)))
+                tracks[axis].guide(Pulse(axis, rate, client.now_s, abs(seconds)))
         sent = ra_s * speeds[0], dec_s * speeds[1]
-        told(Guided(t_s=_now_s(client), off=off, sent=sent, pulses_s=(ra_s, dec_s)))
+        told(Guided(t_s=client.now_s, off=off, sent=sent, pulses_s=(ra_s, dec_s)))
         if longest := max(abs(ra_s), abs(dec_s)):
             yield from client.wait(longest + RAMP_S)
 
@@ -130,7 +130,3 @@ def _pulse_s(off: float, aggressiveness: float, speed: float) -> float:
     if abs(off) < LEAST_ARCSEC:
         return 0.0
     return math.copysign(min(round(aggressiveness * abs(off) / speed, 3), LONGEST_S), off)
-
-
-def _now_s(client: Client) -> float:
-    return client.now_ns * 1e-9

@@ -17,7 +17,9 @@ def reference(client: Client) -> Procedure:
     yield from client.ask(Device.FOCUS, Opcode.FOCUS_REFERENCE)
     yield from client.wait(0.2)
     yield from client.until(
-        "FOCUS: referenced", lambda: _referenced(client) and _at_rest(client), _REFERENCE_S
+        "FOCUS: referenced",
+        lambda: says(client, FocusFlag.REFERENCED) and not says(client, FocusFlag.MOVING),
+        _REFERENCE_S,
     )
 
 
@@ -50,25 +52,10 @@ def set_state(client: Client, state: str) -> Procedure:
 
 def _at(client: Client, goal: int) -> bool:
     now = client.focus()
-    return now is not None and now.position == goal and not now.flags & FocusFlag.MOVING
+    return now is not None and now.position == goal and not says(client, FocusFlag.MOVING)
 
 
-def _at_rest(client: Client) -> bool:
+def says(client: Client, flag: FocusFlag) -> bool:
+    """Whether the board's last frame has a flag: the motor turns, nothing holds the shaft, ..."""
     now = client.focus()
-    return now is not None and not now.flags & FocusFlag.MOVING
-
-
-def _referenced(client: Client) -> bool:
-    now = client.focus()
-    return now is not None and bool(now.flags & FocusFlag.REFERENCED)
-
-
-def moving(client: Client) -> bool:
-    """Whether the board says that the motor turns."""
-    return client.focus() is not None and not _at_rest(client)
-
-
-def is_free(client: Client) -> bool:
-    """Whether nothing holds the shaft."""
-    now = client.focus()
-    return now is not None and bool(now.flags & FocusFlag.FREE)
+    return now is not None and bool(now.flags & flag)

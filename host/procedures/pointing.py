@@ -79,7 +79,7 @@ class Pointing:
             reading = self.client.position(encoder)
             if reading is None:
                 return None
-            latched_s = (self.client.link.measured_ns[encoder] - reading.age * 4000) * 1e-9
+            latched_s = self.client.latched_s(encoder, reading)
             errors.append((track.steps(latched_s)[index] - reading.position) * STEP_ARCSEC)
         return errors[0], errors[1]
 
@@ -90,7 +90,7 @@ class Pointing:
         self._errors_ns = -1
         for name in classes:
             yield from self._send_rates()
-            steps = track.steps(self._now_s())
+            steps = track.steps(self.client.now_s)
             for axis, target in zip(AXES, steps, strict=True):
                 yield from self.client.ask(axis, Opcode.MOVE_TO, target, SpeedClass[name.upper()])
             reach = REACH[name]
@@ -134,10 +134,7 @@ class Pointing:
     def park(self) -> Procedure:
         """Move to the park position, then switch the axes off."""
         self.track, self.on_target, self.tracking = None, False, False
-        goals = (
-            self.mount.ra.steps(self.mount.park_hour_angle_rad),
-            self.mount.dec.steps(self.mount.park_declination_rad),
-        )
+        goals = self.mount.park_steps
         for axis in AXES:
             yield from self.client.ask(axis, Opcode.TRACK_RATE, 0)
         for name in CLASSES[:3]:
@@ -152,7 +149,7 @@ class Pointing:
 
     def _send_rates(self, trims: tuple[float, float] = (0.0, 0.0)) -> Procedure:
         assert self.track is not None
-        rates = self.track.rates(self._now_s())
+        rates = self.track.rates(self.client.now_s)
         for axis, rate, trim in zip(AXES, rates, trims, strict=True):
             yield from self.client.ask(axis, Opcode.TRACK_RATE, rate_q16(rate + trim))
 
@@ -179,6 +176,3 @@ class Pointing:
 
     def _name(self) -> str:
         return self.track.star.name if self.track is not None else "its target"
-
-    def _now_s(self) -> float:
-        return self.client.now_ns * 1e-9

@@ -54,10 +54,8 @@ def visit(
     visits = []
     client = pointing.client
     for number, each in enumerate(where, 1):
-        now_s = client.now_ns * 1e-9
-        apparent = apparent_of_observed(
-            each.hour_angle_rad, each.declination_rad, place.site, place.clock, now_s
-        )
+        now_s = client.now_s
+        apparent = apparent_of_observed(*each[:2], place.site, place.clock, now_s)
         star = star_of_apparent(apparent, place.clock, now_s, f"field {number}")
         yield from pointing.goto(StarTrack(star, place.site, place.clock, place.mount))
         visits.append(_look(pointing, place, star, eye))
@@ -72,16 +70,15 @@ def _look(pointing: Pointing, place: Standpoint, star: Star, eye: Eye) -> Visit:
     for encoder in ENCODERS:
         reading = client.position(encoder)
         assert reading is not None  # the telescope has just been brought here by it
-        latched_s = (client.link.measured_ns[encoder] - reading.age * 4000) * 1e-9
         steps.append(reading.position)
-        seen.append(observe(star, place.site, place.clock, latched_s))
+        seen.append(observe(star, place.site, place.clock, client.latched_s(encoder, reading)))
     sighting = Sighting(
         hour_angle_rad=seen[0].hour_angle_rad - off[0],
         declination_rad=seen[1].declination_rad - off[1],
         ra_steps=steps[0],
         dec_steps=steps[1],
     )
-    return Visit(t_s=client.now_ns * 1e-9, star=star, sighting=sighting)
+    return Visit(t_s=client.now_s, star=star, sighting=sighting)
 
 
 def _spiral(total: int, place: Standpoint, turn_rad: float) -> list[Observed]:
@@ -102,6 +99,4 @@ def _within(each: Observed, place: Standpoint) -> bool:
 
 
 def _way(here: Observed, there: Observed) -> float:
-    return max(
-        abs(here.hour_angle_rad - there.hour_angle_rad), abs(here.declination_rad - there.declination_rad)
-    )
+    return max(abs(a - b) for a, b in zip(here[:2], there[:2], strict=True))

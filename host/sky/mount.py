@@ -66,6 +66,11 @@ class Mount:
     park_declination_rad: float
     model: PointingModel | None = None
 
+    @property
+    def park_steps(self) -> tuple[int, int]:
+        """Encoder readings of the parked telescope."""
+        return self.ra.steps(self.park_hour_angle_rad), self.dec.steps(self.park_declination_rad)
+
     def axes(self, hour_angle_rad: float, declination_rad: float) -> tuple[float, float]:
         """Angles of both axes, rad, that look at an observed place."""
         if self.model is None:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from host.sky.pointfit import SIGNIFICANT, beside, fit_stars, held_out, significance
+from host.sky.pointfit import SIGNIFICANT, beside, beside_others, fit_stars, held_out, without
 from host.sky.pointmodel import PointingModel
 from host.sky.pointsmooth import Smooth, chance, functions
 from host.sky.pointstars import Stars, rms
@@ -57,7 +57,9 @@ def find(stars: Stars, declared: tuple[str, ...] = GEOMETRY) -> Answer:
     names = tuple(term.name for term in model.terms)
     smooth = _smooth(stars, names)
     while smooth:  # a term that only mimics what depends on the variable goes
-        mimics = [name for name in names if name not in declared and not _stands(stars, names, smooth, name)]
+        over = [each.columns for each in smooth]
+        free = [name for name in names if name not in declared]
+        mimics = [name for name in free if beside_others(stars, names, name, *over) <= SIGNIFICANT]
         if not mimics:
             break
         names = tuple(name for name in names if name not in mimics)
@@ -104,15 +106,6 @@ def _held_out(stars: Stars, names: tuple[str, ...], smooth: tuple[Smooth, ...]) 
     return held_out(_design(stars, names, smooth), stars.left(names))
 
 
-def _stands(stars: Stars, names: tuple[str, ...], smooth: tuple[Smooth, ...], name: str) -> bool:
-    """Whether a term is significant beside everything else."""
-    others = tuple(each for each in names if each != name)
-    basis, _ = np.linalg.qr(_design(stars, others, smooth))
-    residuals = stars.left(others)
-    residuals = residuals - basis @ (basis.T @ residuals)
-    return significance(stars.columns((name,))[:, 0], basis, residuals) > SIGNIFICANT
-
-
 def _term(
     stars: Stars, model: PointingModel, names: tuple[str, ...],
     smooth: tuple[Smooth, ...], name: str,
@@ -120,26 +113,19 @@ def _term(
     """A term that is missing, with those that could stand in its place."""
     fitted = next(term for term in model.terms if term.name == name)
     best = _squares(stars, names, smooth)
-    equivalent = tuple(
-        other
-        for other in TERMS
-        if other not in names
-        and 2 * len(stars.h) * np.log(_squares(stars, _replaced(names, name, other), smooth) / best)
-        < _AS_WELL
-    )
+    equivalent = []
+    for other in (each for each in TERMS if each not in names):
+        instead = tuple(other if each == name else each for each in names)
+        if 2 * len(stars.h) * np.log(_squares(stars, instead, smooth) / best) < _AS_WELL:
+            equivalent.append(other)
     return Lack(
-        name=name, equivalent=equivalent, over=None, arcsec=fitted.arcsec, within_arcsec=fitted.within_arcsec
-    )
-
-
-def _replaced(names: tuple[str, ...], old: str, new: str) -> tuple[str, ...]:
-    return tuple(new if each == old else each for each in names)
+        name=name, equivalent=tuple(equivalent), over=None, arcsec=fitted.arcsec,
+        within_arcsec=fitted.within_arcsec,
+    )  # fmt: skip
 
 
 def _squares(stars: Stars, names: tuple[str, ...], smooth: tuple[Smooth, ...]) -> float:
-    basis, _ = np.linalg.qr(_design(stars, names, smooth))
-    residuals = stars.left(names)
-    rest = residuals - basis @ (basis.T @ residuals)
+    rest = without(_design(stars, names, smooth), stars.left(names))
     return float(rest @ rest)
 
 
@@ -153,15 +139,12 @@ def _unknown(stars: Stars, names: tuple[str, ...], each: Smooth) -> Lack:
 
 def _limits(stars: Stars, names: tuple[str, ...]) -> tuple[dict[str, float], tuple[str, ...]]:
     """Least sizes of terms not in the model that would have been significant; terms this sky hides."""
-    basis, _ = np.linalg.qr(stars.columns(names))
-    residuals = stars.left(names)
+    design, residuals = stars.columns(names), stars.left(names)
     deviation = np.sqrt(residuals @ residuals / (len(residuals) - len(names)))
     unseen: dict[str, float] = {}
     confounded = []
-    for name in TERMS:
-        if name in names:
-            continue
-        new = beside(stars.columns((name,))[:, 0], basis)
+    for name in (each for each in TERMS if each not in names):
+        new = beside(stars.columns((name,))[:, 0], design)
         if new is None:
             confounded.append(name)
         else:

@@ -78,12 +78,11 @@ def _pruned(stars: Stars, declared: tuple[str, ...]) -> tuple[str, ...]:
     """
     names = declared
     for name in (each for each in TERMS if each not in declared):
-        basis, _ = np.linalg.qr(stars.columns(names))
-        names += (name,) if beside(stars.columns((name,))[:, 0], basis) is not None else ()
+        names += (name,) if beside(stars.columns((name,))[:, 0], stars.columns(names)) is not None else ()
     if len(names) > _most(stars):
         return declared
     while more := [name for name in names if name not in declared]:
-        scores = {name: _beside_others(stars, names, name) for name in more}
+        scores = {name: beside_others(stars, names, name) for name in more}
         least = min(scores, key=lambda each: scores[each])
         if scores[least] > SIGNIFICANT:
             break
@@ -91,11 +90,11 @@ def _pruned(stars: Stars, declared: tuple[str, ...]) -> tuple[str, ...]:
     return names
 
 
-def _beside_others(stars: Stars, names: tuple[str, ...], name: str) -> float:
-    """Significance of one of the terms beside the others."""
+def beside_others(stars: Stars, names: tuple[str, ...], name: str, *more: Array) -> float:
+    """Significance of one of the terms beside the others, and more columns."""
     others = tuple(each for each in names if each != name)
-    basis, _ = np.linalg.qr(stars.columns(others))
-    return significance(stars.columns((name,))[:, 0], basis, stars.left(others))
+    design = np.hstack([stars.columns(others), *more])
+    return significance(stars.columns((name,))[:, 0], design, stars.left(others))
 
 
 def _grown(stars: Stars, declared: tuple[str, ...]) -> tuple[str, ...]:
@@ -115,29 +114,34 @@ def _grown(stars: Stars, declared: tuple[str, ...]) -> tuple[str, ...]:
 
 def _candidate(stars: Stars, names: tuple[str, ...]) -> str | None:
     """The most significant term that is left, if it is significant."""
-    residuals = stars.left(names)
-    basis, _ = np.linalg.qr(stars.columns(names))
+    residuals, design = stars.left(names), stars.columns(names)
     columns = {name: stars.columns((name,))[:, 0] for name in TERMS if name not in names}
-    scores = {name: significance(column, basis, residuals) for name, column in columns.items()}
+    scores = {name: significance(column, design, residuals) for name, column in columns.items()}
     # DAF is HCEC and NP: equal scores differ by rounding, and the first of the table is taken.
     found = max(scores, key=lambda each: round(scores[each], 6), default="")
     return found if scores.get(found, 0.0) > SIGNIFICANT else None
 
 
-def beside(column: Array, basis: Array) -> Array | None:
-    """Part of a column (2 n,) that an orthonormal basis does not hold; None: this sky cannot tell the two."""
-    new: Array = column - basis @ (basis.T @ column)
+def without(design: Array, values: Array) -> Array:
+    """Part of values, (2 n,) or (2 n, k), that the columns of a design do not hold."""
+    basis, _ = np.linalg.qr(design)
+    return np.asarray(values - basis @ (basis.T @ values))
+
+
+def beside(column: Array, design: Array) -> Array | None:
+    """Part of a column (2 n,) that a design does not hold; None: this sky cannot tell the two."""
+    new = without(design, column)
     return None if new @ new < NEW * (column @ column) else new
 
 
-def significance(column: Array, basis: Array, residuals: Array) -> float:
-    """A column's coefficient over its standard deviation, beside a basis that residuals are free of."""
-    new = beside(column, basis)
+def significance(column: Array, design: Array, residuals: Array) -> float:
+    """A column's coefficient over its standard deviation, beside a design."""
+    new = beside(column, design)
     if new is None:
         return 0.0
     value = float(new @ residuals) / float(new @ new)
-    rest = residuals - value * new
-    deviation = float(np.sqrt(rest @ rest / (len(rest) - basis.shape[1] - 1) / (new @ new)))
+    rest = without(design, residuals) - value * new
+    deviation = float(np.sqrt(rest @ rest / (len(rest) - design.shape[1] - 1) / (new @ new)))
     return abs(value) / max(deviation, 1e-12)
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from host.sky.pointfit import NEW
+from host.sky.pointfit import NEW, without
 from host.sky.pointstars import Stars
 from host.sky.pointterms import Array
 
@@ -63,11 +63,10 @@ def chance(design: Array, columns: Array, residuals: Array) -> float:
     An F test; residuals: (2 n,)."""
     from scipy.stats import f  # only who calibrates needs it
 
-    basis, _ = np.linalg.qr(design)
-    rest = residuals - basis @ (basis.T @ residuals)
-    new, sizes, _ = np.linalg.svd(columns - basis @ (basis.T @ columns), full_matrices=False)
+    rest = without(design, residuals)
+    new, sizes, _ = np.linalg.svd(without(design, columns), full_matrices=False)
     new = new[:, sizes**2 > NEW * np.max(np.sum(columns**2, axis=0))]
-    free = len(rest) - basis.shape[1] - new.shape[1]
+    free = len(rest) - design.shape[1] - new.shape[1]
     if new.shape[1] == 0 or free <= 0:
         return 1.0
     taken = float(np.sum((new.T @ rest) ** 2))

@@ -38,24 +38,21 @@ class Stars:
     latitude_rad: float
     others: dict[str, Array]
 
-    def take(self, rows: Array) -> Stars:
-        """Some of the stars."""
-        return Stars(
-            h=self.h[rows], d=self.d[rows], ra=self.ra[rows], dec=self.dec[rows],
-            latitude_rad=self.latitude_rad, others={name: each[rows] for name, each in self.others.items()},
-        )  # fmt: skip
-
     def columns(self, names: Sequence[str]) -> Array:
         """Of terms, (2 n, terms): east-west of all stars, then north-south."""
         return np.stack(
             [np.concatenate(TERMS[name](self.h, self.d, self.latitude_rad)) for name in names], axis=1
         )
 
+    def off(self, model: PointingModel) -> tuple[Array, Array]:
+        """Reading less what a model says, rad on the sky: west, north."""
+        ra, dec = model.axes_many(self.h, self.d)
+        west = (np.remainder(self.ra - ra + np.pi, 2 * np.pi) - np.pi) * np.cos(self.d)
+        return west, self.dec - dec
+
     def residuals(self, names: Sequence[str], values: Array) -> Array:
         """Reading less what terms of these sizes, ″, say: ″, (2 n,)."""
-        ra, dec = model_of(names, values, self.latitude_rad).axes_many(self.h, self.d)
-        off = np.remainder(self.ra - ra + np.pi, 2 * np.pi) - np.pi
-        return np.concatenate([off * np.cos(self.d), self.dec - dec]) * ARCSEC_PER_RAD
+        return np.concatenate(self.off(model_of(names, values, self.latitude_rad))) * ARCSEC_PER_RAD
 
     def solve(self, names: Sequence[str]) -> Array:
         """Least squares of both coordinates, ″, (terms,)."""

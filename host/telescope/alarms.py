@@ -2,7 +2,7 @@
 
 from collections import deque
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
 from typing import Final
 
@@ -11,7 +11,7 @@ from bus.protocol.nodes import DOME, WEATHER
 from host.client import SILENCE_NS
 from host.telescope.house import House
 from host.telescope.jobs import Activity
-from host.telescope.state import AxisState, Snapshot
+from host.telescope.state import Snapshot
 from host.telescope.telescope import Telescope
 
 SILENCE_S: Final = SILENCE_NS * 1e-9
@@ -60,30 +60,32 @@ class Alarms:
             if known is None or known.until_s is not None:
                 self._known[what] = Alarm(what, severity, t_s)
             elif known.severity != severity:  # worse is news again
-                self._known[what] = Alarm(
-                    what, severity, known.since_s, None, known.acknowledged and severity < known.severity
-                )
+                seen = known.acknowledged and severity < known.severity
+                self._known[what] = replace(known, severity=severity, acknowledged=seen)
         for what, known in list(self._known.items()):
             if what in found:
                 continue
             if known.acknowledged:
                 del self._known[what]
             elif known.until_s is None:
-                self._known[what] = Alarm(what, known.severity, known.since_s, t_s)
+                self._known[what] = replace(known, until_s=t_s)
 
     def acknowledge(self) -> None:
         """Somebody has seen them all: what has gone goes."""
-        for what, alarm in list(self._known.items()):
-            if alarm.until_s is not None:
-                del self._known[what]
-            else:
-                self._known[what] = Alarm(what, alarm.severity, alarm.since_s, None, True)
+        self._known = {
+            what: replace(alarm, acknowledged=True)
+            for what, alarm in self._known.items()
+            if alarm.until_s is None
+        }
 
     def of_telescope(self, now: Snapshot) -> dict[str, Severity]:
         """What a snapshot shows."""
         found: dict[str, Severity] = {}
         for name, axis in (("RA", now.ra), ("Dec", now.dec)):
-            found |= _of_axis(name, axis)
+            if axis.fault:
+                found[f"{name}: FAULT, the motors are off"] = Severity.ALARM
+            if axis.soft_limit:
+                found[f"{name} is at its soft limit"] = Severity.WARNING
         for device in now.stale:
             found[f"{device.name}: no measurement"] = Severity.ALARM
         for board in now.boards:
@@ -101,15 +103,6 @@ class Alarms:
                 found[f"{name} loses interrupts"] = Severity.WARNING
             self._overruns[name] = board.overruns
         return found
-
-
-def _of_axis(name: str, axis: AxisState) -> dict[str, Severity]:
-    found = {}
-    if axis.fault:
-        found[f"{name}: FAULT, the motors are off"] = Severity.ALARM
-    if axis.soft_limit:
-        found[f"{name} is at its soft limit"] = Severity.WARNING
-    return found
 
 
 def of_bus(load: float, running: list[tuple[int, str]]) -> dict[str, Severity]:

@@ -4,6 +4,7 @@ import math
 
 from bus.protocol import AxisMode, Device, Opcode, unpack_target
 from bus.protocol.scales import rate_q16
+from bus.units import ARCSEC_PER_RAD
 from host.client import Client, Procedure
 from host.logs.journal import Logs
 from host.procedures import power
@@ -80,8 +81,7 @@ class Drive:
         ra, dec = (self.client.position(encoder) for encoder in ENCODERS)
         if ra is None or dec is None:
             raise Refused(Reason.SILENT, "no position has been received yet")
-        latched_ns = self.client.link.measured_ns[ENCODERS[0]] - ra.age * 4000
-        return ra.position, dec.position, latched_ns * 1e-9
+        return ra.position, dec.position, self.client.latched_s(ENCODERS[0], ra)
 
     def here(self) -> Star:
         """The place in the sky the telescope points at, as a star to follow."""
@@ -92,8 +92,7 @@ class Drive:
     # --- commands ---
     def power_on(self, check: bool = True) -> Job[None]:
         """Health check, then both axes on; ends being parked."""
-        if self.activity in _MOVING:
-            raise Refused(Reason.STATE, "the axes are moving")
+        self._still()
         return self.begin("power on", self.power(check), Activity.POWERING)
 
     def wake(self) -> None:
@@ -113,7 +112,7 @@ class Drive:
         """Go to a star and track it. A parked telescope refuses, unless `wake` has it powered up first."""
         self.unparked(wake)
         try:
-            self.observatory.check(star, self._now_s())
+            self.observatory.check(star, self.client.now_s)
         except BelowHorizon as error:
             raise Refused(Reason.BELOW_HORIZON, str(error)) from None
         except Unreachable as error:
@@ -129,8 +128,8 @@ class Drive:
         place = equatorial(azimuth_rad, altitude_rad, self.observatory.site)
         self._reachable(place)
         self.tracking = False
-        about, mount = self.observatory, self.observatory.mount
-        track = GroundTrack(place, about.site, about.clock, mount)
+        about = self.observatory
+        track = GroundTrack(place, about.site, about.clock, about.mount)
         return self.begin("slew to altitude and azimuth", self._slew(track), Activity.SLEWING)
 
     def track(self, on: bool) -> None:
@@ -180,25 +179,20 @@ class Drive:
 
         The star is kept for a pointing model.
         """
-        if self.activity in _MOVING:
-            raise Refused(Reason.STATE, "the axes are moving")
+        self._still()
         ra, dec, t_s = self.readings()
         about = self.observatory
         expected = SkyTrack(star, about.site, about.clock, about.mount).steps(t_s)
         offsets = (ra - expected[0], dec - expected[1])
         arcsec = (offsets[0] * STEP_ARCSEC, offsets[1] * STEP_ARCSEC)
-        if max(map(abs, arcsec)) > math.degrees(SYNC_LIMIT_RAD) * 3600:
-            far = format_degrees(math.radians(max(map(abs, arcsec)) / 3600))
+        away_rad = max(map(abs, arcsec)) / ARCSEC_PER_RAD
+        if away_rad > SYNC_LIMIT_RAD:
+            far = format_degrees(away_rad)
             raise Refused(
                 Reason.STATE, f"the encoders say {far} from there: not the same star, or the clock is wrong"
             )
-        place = observe(star, about.site, about.clock, t_s)
-        about.stars += (
-            Sighting(
-                hour_angle_rad=place.hour_angle_rad, declination_rad=place.declination_rad,
-                ra_steps=ra, dec_steps=dec,
-            ),
-        )  # fmt: skip
+        h, d, *_ = observe(star, about.site, about.clock, t_s)
+        about.stars += (Sighting(hour_angle_rad=h, declination_rad=d, ra_steps=ra, dec_steps=dec),)
         about.align(*offsets)
         text = f"aligned: hour angle {arcsec[0]:.1f}″, declination {arcsec[1]:.1f}″"
         self.logs.status(self.client.now_ns, "HOST", text)
@@ -215,8 +209,7 @@ class Drive:
 
     def apply_model(self, model: PointingModel | None) -> None:
         """Point by a model, or by the encoders alone; tracking goes on where the telescope is."""
-        if self.activity in _MOVING:
-            raise Refused(Reason.STATE, "the axes are moving")
+        self._still()
         self.observatory.apply(model)
         terms = "none" if model is None else " ".join(f"{t.name}={t.arcsec:.1f}″" for t in model.terms)
         self.logs.status(self.client.now_ns, "HOST", f"pointing model: {terms}")
@@ -274,11 +267,7 @@ class Drive:
 
     def _at_park(self) -> bool:
         ra, dec, _ = self.readings()
-        mount = self.observatory.mount
-        off = (
-            ra - mount.ra.steps(mount.park_hour_angle_rad),
-            dec - mount.dec.steps(mount.park_declination_rad),
-        )
+        off = (here - there for here, there in zip((ra, dec), self.observatory.mount.park_steps, strict=True))
         return max(map(abs, off)) * STEP_ARCSEC < _PARK_ARCSEC
 
     # --- procedures ---
@@ -304,7 +293,7 @@ class Drive:
     def _follow_here(self) -> Procedure:
         """Move with the sky first and look then where that is: no jump, and nothing to catch up with."""
         self.pointing.commanding = True
-        rates = self._track_of(self.here()).rates(self._now_s())
+        rates = self._track_of(self.here()).rates(self.client.now_s)
         for axis, rate in zip(power.AXES, rates, strict=True):
             yield from self.client.ask(axis, Opcode.TRACK_RATE, rate_q16(rate))
         yield from self.client.wait(_SUMMARY_S)
@@ -323,7 +312,7 @@ class Drive:
         self.pointing.mount = about.mount
         extra = self.drive_rate.value - DriveRate.SIDEREAL.value
         drift = (self.drift_arcsec_s[0] + extra, self.drift_arcsec_s[1]) if drifting else (0.0, 0.0)
-        return SkyTrack(star, about.site, about.clock, about.mount, drift, self._now_s())
+        return SkyTrack(star, about.site, about.clock, about.mount, drift, self.client.now_s)
 
     def power(self, check: bool = True) -> Procedure:
         """Power up unless it is done; the first part of every move."""
@@ -368,18 +357,16 @@ class Drive:
         if self.parked and not wake:
             raise Refused(Reason.PARKED, "the telescope is parked")
 
+    def _still(self) -> None:
+        if self.activity in _MOVING:
+            raise Refused(Reason.STATE, "the axes are moving")
+
     def _reachable(self, place: Observed) -> None:
-        about = self.observatory
-        if place.altitude_rad < about.horizon_rad:
+        mount = self.observatory.mount
+        if place.altitude_rad < self.observatory.horizon_rad:
             text = f"altitude {format_degrees(place.altitude_rad)} is below the horizon limit"
             raise Refused(Reason.BELOW_HORIZON, text)
-        axes = (
-            ("hour angle", about.mount.ra, place.hour_angle_rad),
-            ("declination", about.mount.dec, place.declination_rad),
-        )
-        for name, scale, angle in axes:
+        axes = ("hour angle", mount.ra), ("declination", mount.dec)
+        for (name, scale), angle in zip(axes, place[:2], strict=True):
             if not scale.within(angle):
                 raise Refused(Reason.LIMIT, f"{name} {format_degrees(angle)} is beyond the soft limits")
-
-    def _now_s(self) -> float:
-        return self.client.now_ns * 1e-9

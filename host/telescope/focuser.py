@@ -1,6 +1,6 @@
 """The focus drive: one thing at a time, in half steps of 6.25 µm (H3)."""
 
-from bus.protocol import Device, Opcode
+from bus.protocol import Device, FocusFlag, Opcode
 from host.client import Client, Procedure
 from host.logs.journal import Logs
 from host.procedures import focus
@@ -22,14 +22,13 @@ class Focuser:
     @property
     def moving(self) -> bool:
         """A command is under way, or the board says that the motor turns."""
-        now = focus.moving(self.client)
-        return now or (self.job is not None and self.job.running)
+        turns = focus.says(self.client, FocusFlag.MOVING)
+        return turns or (self.job is not None and self.job.running)
 
     def move_to(self, half_steps: int) -> Job[None]:
         """Go to a position."""
         if abs(half_steps) > TRAVEL_HALF_STEPS:
-            text = f"{half_steps} half steps is outside ±{TRAVEL_HALF_STEPS}"
-            raise Refused(Reason.VALUE, text)
+            raise Refused(Reason.VALUE, f"{half_steps} half steps is outside ±{TRAVEL_HALF_STEPS}")
         self._energised()
         return self._begin(f"focus to {half_steps}", focus.move_to(self.client, half_steps))
 
@@ -80,5 +79,5 @@ class Focuser:
             yield from self.client.wait(_CREEP_S)
 
     def _energised(self) -> None:
-        if focus.is_free(self.client):
+        if focus.says(self.client, FocusFlag.FREE):
             raise Refused(Reason.STATE, "the focus is free (control power off); hold it first")

@@ -24,7 +24,7 @@ class Guider:
     """
 
     def __init__(self, drive: Drive, side: Side) -> None:
-        self._drive, self._side = drive, side
+        self._drive, self._client, self._side = drive, drive.client, side
         self.told: Callable[[Pulse], None] | None = None
         """Hears of every pulse that is taken, begun when it came."""
         self._ends_s = [-1.0, -1.0]
@@ -40,28 +40,28 @@ class Guider:
         track = self._drive.pointing.track
         if self._drive.activity is not Activity.TRACKING or not isinstance(track, SkyTrack):
             raise Refused(Reason.STATE, "guiding needs a telescope that tracks")
-        begin_s = self._ends_s[axis] if self._busy(axis) else self._now_s
-        if begin_s - self._now_s > _LONGEST_S:
+        begin_s = self._ends_s[axis] if self._busy(axis) else self._client.now_s
+        if begin_s - self._client.now_s > _LONGEST_S:
             raise Refused(Reason.STATE, f"pulses of this axis for {_LONGEST_S:g} s wait already")
         pulse = Pulse(axis, arcsec_s, begin_s, seconds)
         track.guide(pulse)
         self._ends_s[axis] = pulse.end_s
         if self.told is not None:
-            self.told(pulse._replace(begin_s=self._now_s))
+            self.told(pulse._replace(begin_s=self._client.now_s))
         job = self._jobs[axis]
         if job is None or not job.running:
             self._jobs[axis] = self._side.start(Job("guide", self._guide(axis, track), Activity.TRACKING))
 
     def _guide(self, axis: int, track: SkyTrack) -> Procedure:
         """Rates, tick by tick, that bring the board's target where the pulses want it."""
-        pointing, client = self._drive.pointing, self._drive.client
-        shifting = Shifting(track.shifted(self._now_s - TICK_S)[axis], self._now_s)
+        pointing, client = self._drive.pointing, self._client
+        shifting = Shifting(track.shifted(self._client.now_s - TICK_S)[axis], self._client.now_s)
         while pointing.commanding and self._follows(track):
             yield
         pointing.guided += 1
         try:
             while self._follows(track):
-                now_s = self._now_s
+                now_s = self._client.now_s
                 rate = shifting.rate(track.shifted(now_s + TICK_S)[axis], now_s)
                 base = track.rates(now_s)[axis] + pointing.trims[axis]
                 device = AXES[axis]
@@ -73,11 +73,7 @@ class Guider:
 
     def _busy(self, axis: int) -> bool:
         job = self._jobs[axis]
-        return job is not None and job.running and self._now_s < self._ends_s[axis]
+        return job is not None and job.running and self._client.now_s < self._ends_s[axis]
 
     def _follows(self, track: SkyTrack) -> bool:
         return self._drive.activity is Activity.TRACKING and self._drive.pointing.track is track
-
-    @property
-    def _now_s(self) -> float:
-        return self._drive.client.now_ns * 1e-9

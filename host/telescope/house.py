@@ -1,10 +1,10 @@
 """Dome, weather and power (H7): what their boards say, and the few things they can be told."""
 
 import math
-from collections.abc import Callable, Generator
+from collections.abc import Callable
 from typing import Final
 
-from bus.protocol import Device
+from bus.protocol import Device, Reply
 from bus.protocol.nodes import DOME, WEATHER, Kind
 from host.client import TICK_NS, Client
 from host.procedures.dome import BOARD as DOME_BOARD
@@ -49,7 +49,7 @@ class House:
     def stale(self, board: str) -> bool:
         """Whether its measurement is older than it may be."""
         oldest_ns = MISSED * codecs()[board].period_ns + TICK_NS
-        return self._client.now_ns * 1e-9 - self.heard_s(board) > oldest_ns * 1e-9
+        return self._client.now_s - self.heard_s(board) > oldest_ns * 1e-9
 
     def fresh(self, board: str) -> dict[str, float] | None:
         """The same as `reading`; None also when it is stale."""
@@ -75,7 +75,7 @@ class House:
         """Names of the boards of a kind that have been heard."""
         return [name for name, number in kind.nodes.items() if number in self._client.link.measurements]
 
-    def turn(self, azimuth_deg: float) -> Job[None]:
+    def turn(self, azimuth_deg: float) -> Job[Reply]:
         """Turn the slit to an azimuth, 0 up to 360°."""
         if not 0 <= azimuth_deg < 360:
             raise Refused(Reason.VALUE, f"azimuth {azimuth_deg:g}° is not within 0..360°")
@@ -100,28 +100,25 @@ class House:
         if abs(math.remainder(wanted - slit, 360)) > _FOLLOW_DEG:
             self._turn(wanted)
 
-    def _turn(self, azimuth_deg: float) -> Job[None]:
+    def _turn(self, azimuth_deg: float) -> Job[Reply]:
         return self._tell(DOME, DOME_BOARD, "DOME_GOTO", centidegrees(azimuth_deg))
 
-    def shutter(self, opened: bool) -> Job[None]:
+    def shutter(self, opened: bool) -> Job[Reply]:
         """Open or close; the board refuses to open in bad weather."""
         self.opening = opened
         return self._tell(DOME, DOME_BOARD, "DOME_SHUTTER", int(opened))
 
-    def stop(self) -> Job[None]:
+    def stop(self) -> Job[Reply]:
         """Stop dome and shutter, and following; commands that still wait are given up, as a stop is not
         queued."""
         self.slaved = False
         self._client.forget(DOME_BOARD)
         return self._tell(DOME, DOME_BOARD, "DOME_STOP")
 
-    def _tell(self, kind: Kind, device: Device, name: str, *arguments: int) -> Job[None]:
+    def _tell(self, kind: Kind, device: Device, name: str, *arguments: int) -> Job[Reply]:
         self._there(device)
-
-        def procedure() -> Generator[None, None, None]:
-            yield from self._client.ask(device, opcode(kind, name), *arguments)
-
-        return self._side.start(Job(f"{device.name} {name}", procedure(), Activity.IDLE))
+        asked = self._client.ask(device, opcode(kind, name), *arguments)
+        return self._side.start(Job(f"{device.name} {name}", asked, Activity.IDLE))
 
     def _there(self, device: Device = DOME_BOARD) -> None:
         if device not in self._client.link.measurements:

@@ -7,7 +7,6 @@ from bus.protocol import (
     Device,
     FocusFlag,
     Health,
-    Motion,
     MotionFlag,
     State,
     unpack_tach,
@@ -109,33 +108,27 @@ def axis_state(client: Client, name: str) -> AxisState:
     summary = client.link.summaries.get(board)
     tachs = [client.link.measurements.get(motor) for motor in motors]
     turns = [unpack_tach(data).delta / _TACH_COUNTS / _TACH_PERIOD_S if data else None for data in tachs]
-    latched_s = 0.0
-    if reading is not None:
-        latched_s = (client.link.measured_ns[encoder] - reading.age * 4000) * 1e-9
+    steps = reading.position if reading else None
+    latched_s = client.latched_s(encoder, reading) if reading else 0.0
     flags = MotionFlag(motion.flags) if motion else MotionFlag(0)
+    rate = rate_arcsec_s(motion.velocity) if motion else 0.0
     return AxisState(
-        steps=reading.position if reading else None,
+        steps=steps,
         latched_s=latched_s,
         mode=AxisMode(motion.mode) if motion and motion.mode in _MODES else AxisMode.OFF,
         powered=bool(flags & MotionFlag.POWERED),
         moving=bool(flags & MotionFlag.MOVING),
         soft_limit=bool(flags & MotionFlag.SOFT_LIMIT),
         fault=bool(flags & MotionFlag.FAULT),
-        rate_arcsec_s=_rate(motion),
+        rate_arcsec_s=rate,
         effort=motion.effort / EFFORT_FULL if motion else 0.0,
         currents_a=(
             (motion.adc_a * CURRENT_A_PER_COUNT, motion.adc_b * CURRENT_A_PER_COUNT) if motion else (0.0, 0.0)
         ),
         motor_turns_s=(turns[0], turns[1]),
         to_go_arcsec=unpack_target(summary).distance * STEP_ARCSEC if summary else 0.0,
-        auxiliary=auxiliary(
-            client.link, name, reading.position if reading else None, latched_s, _rate(motion)
-        ),
+        auxiliary=auxiliary(client.link, name, steps, latched_s, rate),
     )
-
-
-def _rate(motion: Motion | None) -> float:
-    return rate_arcsec_s(motion.velocity) if motion else 0.0
 
 
 def focus_state(client: Client) -> FocusState | None:
@@ -177,15 +170,11 @@ def board_states(client: Client) -> tuple[BoardState, ...]:
 
 def stale_boards(client: Client) -> frozenset[Device]:
     """Boards whose measurement has not come for `MISSED` of its periods, and a tick."""
-    oldest = {
-        device: client.now_ns - client.link.measured_ns.get(device, 0)
-        for device in client.devices
-        if device.name.partition("_")[0] in _PERIOD_NS
-    }
     return frozenset(
         device
-        for device, age_ns in oldest.items()
-        if age_ns > MISSED * _PERIOD_NS[device.name.partition("_")[0]] + TICK_NS
+        for device in client.devices
+        if (period_ns := _PERIOD_NS.get(device.name.partition("_")[0])) is not None
+        and client.now_ns - client.link.measured_ns.get(device, 0) > MISSED * period_ns + TICK_NS
     )
 
 

@@ -12,7 +12,7 @@ from functools import partial
 from queue import Empty, SimpleQueue
 from typing import Any, TypeVar
 
-from bus.protocol import Device, Opcode
+from bus.protocol import Opcode
 from bus.protocol.nodes import DOME
 from host.client import Client
 from host.logs.journal import Journal
@@ -60,7 +60,7 @@ class Telescope:
         self.journal.command(self.client.now_ns, "HOST", "emergency stop", "sent")
         job = self.drive.stop()
         for device in AXES.values():
-            self.side.start(Job("stop", self._ask(device, Opcode.STOP), Activity.STOPPING))
+            self.side.start(Job("stop", self.client.ask(device, Opcode.STOP), Activity.STOPPING))
         self.focuser.hold()
         if self.house.boards(DOME):
             self.house.stop()
@@ -130,14 +130,11 @@ class Telescope:
                 answers.append(partial(future.set_exception, error))
         return answers
 
-    def _ask(self, device: Device, opcode: Opcode) -> Any:
-        yield from self.client.ask(device, opcode)
-
     def _look(self) -> Snapshot:
         client, drive = self.client, self.drive
         track = drive.pointing.track
         return Snapshot(
-            t_s=client.now_ns * 1e-9,
+            t_s=client.now_s,
             ra=axis_state(client, "ra"),
             dec=axis_state(client, "dec"),
             focus=focus_state(client),

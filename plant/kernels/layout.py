@@ -88,18 +88,9 @@ MAX_EFFECTS = 32
 # --- rings
 TRUTH = EFFECTS + ROW * MAX_EFFECTS
 TRUTH_COLUMNS = (
-    "t",
-    "angle",
-    "rate",
-    "current_a",
-    "current_b",
-    "motor_angle_a",
-    "motor_angle_b",
-    "gear_torque_a",
-    "gear_torque_b",
-    "friction",
-    "bristle",
-)
+    "t", "angle", "rate", "current_a", "current_b", "motor_angle_a", "motor_angle_b", "gear_torque_a",
+    "gear_torque_b", "friction", "bristle",
+)  # fmt: skip
 TRUTH_SIZE = len(TRUTH_COLUMNS)
 TRUTH_ROWS = 256
 DELAYS = TRUTH + TRUTH_SIZE * TRUTH_ROWS

@@ -37,14 +37,11 @@ def calibrate_stars(path: Path, terms: str | None, out: Path) -> int:
 
 def report(answer: Answer, declared: tuple[str, ...]) -> dict[str, Any]:
     """The fields of report.json (docs/sources/log-format.md) that a pointing run has."""
+    error = {"unit": "arcsec", "before": answer.before_arcsec, "after": answer.after_arcsec, "floor": None}
     return {
         "verdict": answer.verdict,
         "effects": [_effect(each) for each in answer.lacks],
-        "error": {
-            "pointing": {
-                "unit": "arcsec", "before": answer.before_arcsec, "after": answer.after_arcsec, "floor": None,
-            }
-        },
+        "error": {"pointing": error},
         "calibrated": {
             each.name: _value(each.arcsec, each.within_arcsec)
             for each in answer.model.terms

@@ -135,11 +135,7 @@ def park(served: LiveNetwork, say: Callable[[str], None] = print) -> str:
 
 
 def _parked(served: LiveNetwork, way: _Way, say: Callable[[str], None]) -> str:
-    mount = served.scenario.mount
-    goals = {
-        Device.AXIS_RA: mount.ra.steps(mount.park_hour_angle_rad),
-        Device.AXIS_DEC: mount.dec.steps(mount.park_declination_rad),
-    }
+    goals = dict(zip(AXES.values(), served.scenario.mount.park_steps, strict=True))
     there = [axis for axis in goals if axis.name in served.network.boards]
     failed = way.go(there, way.heard)
     silent = {axis: why for axis, why in failed.items() if axis not in way.link.measurements}

@@ -12,18 +12,9 @@ from scenarios.lab.nodes import firmware_file, load_board
 from scenarios.language.model import Scenario
 
 LAB = (
-    Device.AXIS_RA,
-    Device.POSITION_RA,
-    Device.MOTOR_RA_A,
-    Device.MOTOR_RA_B,
-    Device.AXIS_DEC,
-    Device.POSITION_DEC,
-    Device.MOTOR_DEC_A,
-    Device.MOTOR_DEC_B,
-    Device.GATEWAY,
-    Device.FOCUS,
-    Device.DISPLAY,
-)
+    Device.AXIS_RA, Device.POSITION_RA, Device.MOTOR_RA_A, Device.MOTOR_RA_B, Device.AXIS_DEC,
+    Device.POSITION_DEC, Device.MOTOR_DEC_A, Device.MOTOR_DEC_B, Device.GATEWAY, Device.FOCUS, Device.DISPLAY,
+)  # fmt: skip
 """The ten nodes of L2 and the focus board; those that make up one axis first."""
 SERIAL = (Device.AXIS_RA, Device.POSITION_RA, Device.AXIS_DEC, Device.POSITION_DEC, Device.FOCUS)
 """The five boards with RS232 (L3); the host reaches them by their serial lines."""

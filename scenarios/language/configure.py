@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,7 @@ from bus.units import ARCSEC_PER_TURN
 from host.client import Client, Procedure
 from host.procedures import manual
 from host.procedures.manual import AXES
+from plant.compensation import FORMAT
 from plant.deadzone import bias_steps
 from plant.observer import sections
 from plant.parts import AxisModel, PlantModel
@@ -24,20 +25,14 @@ from scenarios.language.document import ScenarioError, read
 from scenarios.language.model import Scenario, Step
 from scenarios.language.validate import check
 
-FORMAT = "schmidt-compensation 1"
 _Q8, _Q16 = 256, 65536
 _MOST_STEPS = 3000
 
 
 def _block(beside: dict[str, Any], **fields: dict[str, Any]) -> dict[str, Any]:
     """beside: fields that may be missing."""
-    properties = fields | beside
-    return {
-        "type": "object",
-        "required": list(fields),
-        "properties": properties,
-        "additionalProperties": False,
-    }
+    found = {"type": "object", "required": list(fields), "properties": fields | beside}
+    return found | {"additionalProperties": False}
 
 
 def _number(low: float, **high: float) -> dict[str, Any]:
@@ -108,12 +103,8 @@ class Compensation:
         """The same with every wave `scale` times as large and turned by `turn_rad`: how far may it be off?"""
         cosine, sine = math.cos(turn_rad), math.sin(turn_rad)
         lines = tuple(
-            Line(
-                each.order,
-                scale * (each.cosine * cosine + each.sine * sine),
-                scale * (each.sine * cosine - each.cosine * sine),
-            )
-            for each in self.lines
+            Line(o, scale * (c * cosine + s * sine), scale * (s * cosine - c * sine))
+            for o, c, s in map(dataclasses.astuple, self.lines)
         )
         return dataclasses.replace(self, lines=lines, friction_steps=scale * self.friction_steps)
 
@@ -176,64 +167,60 @@ def observer(model: PlantModel, part: AxisModel) -> dict[int, int]:
     return dict(enumerate(board.coefficients, AxisParameter.OBSERVER_FIRST)) | {AxisParameter.OBSERVER: 1}
 
 
-_COMMAND_LINE = "command line"
-
-
 def firmware(client: Client, of_axes: Mapping[str, Mapping[int, int]]) -> Procedure:
     """Set the parameters of a firmware on both axis boards."""
     for axis, device in AXES.items():
         yield from manual.load(client, device, of_axes[axis].items())
 
 
-def compensate(client: Client, wanted: Compensation) -> Procedure:
-    """Load a compensation into its axis board."""
-    yield from manual.load(client, AXES[wanted.axis], wanted.parameters())
-
-
 def with_firmware(scenario: Scenario, name: str) -> Scenario:
     """The scenario with a step in front that makes the boards what `name` says."""
-    return _before(scenario, _step("firmware", f"firmware {name}", use=name))
+    return _with_step(scenario, 0, "firmware", f"firmware {name}", use=name)
 
 
 def with_compensation(scenario: Scenario, wanted: Compensation) -> Scenario:
     """The scenario with a compensation loaded before everything except the firmware."""
-    step = _step("compensation", "compensation", table=wanted)
-    first, *rest = scenario.steps
-    if first.action == "firmware":
-        return dataclasses.replace(scenario, steps=(first, step, *rest))
-    return _before(scenario, step)
+    behind = int(scenario.steps[0].action == "firmware")
+    return _with_step(scenario, behind, "compensation", "compensation", table=wanted)
+
+
+def _with_step(scenario: Scenario, place: int, action: str, name: str, **arguments: Any) -> Scenario:
+    steps = list(scenario.steps)
+    steps.insert(place, Step(name=name, action=action, arguments=arguments, where="command line"))
+    return dataclasses.replace(scenario, steps=tuple(steps))
+
+
+def _with_argument(scenario: Scenario, action: str, name: str, found: Callable[[Step], object]) -> Scenario:
+    """Every step of an action with one argument more."""
+    steps = (
+        dataclasses.replace(step, arguments={**step.arguments, name: found(step)})
+        if step.action == action
+        else step
+        for step in scenario.steps
+    )
+    return dataclasses.replace(scenario, steps=tuple(steps))
 
 
 def with_parameters(scenario: Scenario, model: PlantModel) -> Scenario:
     """The scenario whose firmware steps know what their firmware is on the drives of a plant."""
-    steps = []
-    for step in scenario.steps:
-        if step.action == "firmware":
-            of_axes = {axis: parameters_of(step.arguments["use"], model, axis) for axis in AXES}
-            step = dataclasses.replace(step, arguments={**step.arguments, "of_axes": of_axes})
-        steps.append(step)
-    return dataclasses.replace(scenario, steps=tuple(steps))
 
+    def of_axes(step: Step) -> object:
+        return {axis: parameters_of(step.arguments["use"], model, axis) for axis in AXES}
 
-def _step(action: str, name: str, **arguments: Any) -> Step:
-    return Step(name=name, action=action, arguments=arguments, where=_COMMAND_LINE)
-
-
-def _before(scenario: Scenario, step: Step) -> Scenario:
-    return dataclasses.replace(scenario, steps=(step, *scenario.steps))
+    return _with_argument(scenario, "firmware", "of_axes", of_axes)
 
 
 def read_tables(scenario: Scenario) -> Scenario:
     """Read the files of the scenario's `compensation` steps: from here, then beside the scenario."""
-    steps = []
-    for step in scenario.steps:
-        if step.action == "compensation" and "table" not in step.arguments:
-            name = step.arguments["file"]
-            places = Path(name), scenario.file.parent / name
-            try:
-                table = load_compensation(next((path for path in places if path.is_file()), Path(name)))
-            except ScenarioError as error:
-                raise ScenarioError(f"{step.where}: compensation: {error}") from None
-            step = dataclasses.replace(step, arguments={**step.arguments, "table": table})
-        steps.append(step)
-    return dataclasses.replace(scenario, steps=tuple(steps))
+
+    def table(step: Step) -> object:
+        if "table" in step.arguments:
+            return step.arguments["table"]
+        name = step.arguments["file"]
+        places = Path(name), scenario.file.parent / name
+        try:
+            return load_compensation(next((path for path in places if path.is_file()), Path(name)))
+        except ScenarioError as error:
+            raise ScenarioError(f"{step.where}: compensation: {error}") from None
+
+    return _with_argument(scenario, "compensation", "table", table)

@@ -223,7 +223,8 @@ class Programme:
             case "firmware":
                 return configure.firmware(client, given["of_axes"])
             case "compensation":
-                return configure.compensate(client, given["table"])
+                table = given["table"]
+                return manual.load(client, manual.AXES[table.axis], table.parameters())
             case "set_parameter":
                 device = _device(client, given["node"])
                 return client.ask(device, Opcode.SET_PARAMETER, given["parameter"], given["value"])

@@ -17,6 +17,7 @@ from host.logs.guidelog import hysteresis, opening, section
 from host.sky.catalogue import Star
 from host.sky.mount import STEPS_PER_TURN
 from host.sky.observed import observe_many
+from host.sky.pointread import AXES, DECLINATION, HOUR_ANGLE
 from plant.mount import sky
 from plant.parts import MountErrors
 from scenarios.lab.faults.layers import Evidence
@@ -86,12 +87,8 @@ class Outcome:
 
     def host(self, low_s: float, high_s: float) -> dict[str, Array]:
         """The host's own trace."""
-        return traces.read(
-            self.folder / "host.parquet",
-            ("ra_error_arcsec", "dec_error_arcsec", "focus_half_steps"),
-            low_s,
-            high_s,
-        )
+        names = "ra_error_arcsec", "dec_error_arcsec", "focus_half_steps"
+        return traces.read(self.folder / "host.parquet", names, low_s, high_s)
 
     def star_places(self, star: Star, t_s: Array) -> tuple[Array, Array]:
         """Observed hour angle and declination, rad: exact every second, linear between (within 1e-6″)."""
@@ -125,9 +122,7 @@ class Outcome:
         return {"t": t, "velocity": velocity}
 
 
-COLUMNS = (
-    "step", "t_s", "hour_angle_deg", "declination_deg", "ra_reading_deg", "dec_reading_deg",
-)  # fmt: skip
+COLUMNS = ("step", "t_s", HOUR_ANGLE, DECLINATION, *AXES)
 """Of pointing-stars.csv: observed place that the telescope was seen to look at; angles of both encoders."""
 
 
@@ -141,12 +136,8 @@ def write_runs(outcome: Outcome) -> None:
     for record in outcome.records:
         for visit in record.visits:
             seen = visit.sighting
-            angles = (
-                seen.hour_angle_rad,
-                seen.declination_rad,
-                mount.ra.angle_rad(seen.ra_steps),
-                mount.dec.angle_rad(seen.dec_steps),
-            )
+            axes = mount.ra.angle_rad(seen.ra_steps), mount.dec.angle_rad(seen.dec_steps)
+            angles = seen.hour_angle_rad, seen.declination_rad, *axes
             rows.writerow([record.step.name, f"{visit.t_s:.2f}", *(f"{math.degrees(a):.7f}" for a in angles)])
         if record.model is not None:
             record.model.save(outcome.folder / "pointing-model.json")

@@ -35,12 +35,12 @@ class ObjectiveOptions:
     contains this. steps: the firmware's changes one after the other instead."""
 
     out: Path
-    plant: str = LOW
-    plant_high: str = HIGH
+    steps: bool = False
     compensation: Path | None = None
     starts: int = 8
     seeds: int = 3
     shift: float = 0.0
     seconds: float = 600.0
+    plant: str = LOW
+    plant_high: str = HIGH
     only: str | None = None
-    steps: bool = False

@@ -10,7 +10,7 @@ import pytest
 
 from bus.can import Frame
 from host.camera.camera import Camera, Order, State
-from host.camera.light import Window
+from host.camera.models import Window
 from host.camera.stars import from_file
 from host.sky.observed import observe
 from scenarios.doors.making import check
@@ -26,8 +26,8 @@ def order(camera: Camera, seconds: float) -> Order:
     return Order(seconds=seconds, window=Window(left=left, top=top, width=40, height=40))
 
 
-def read_out(camera: Camera) -> None:
-    end = monotonic() + 60.0
+def read_out(camera: Camera, limit_s: float = 60.0) -> None:
+    end = monotonic() + limit_s
     while camera.state is State.READING:
         assert monotonic() < end, "the frame is not read out"
         sleep(0.01)

@@ -81,22 +81,17 @@ def _model(shell: Shell) -> Callable[[], None]:
                 for each in model.terms
             ])  # fmt: skip
 
-        async def use(model: PointingModel | None) -> None:
-            await shell.attempt(shell.desk.do(lambda t: t.drive.apply_model(model)))
-
         async def apply() -> None:
             if found:
-                await use(found[0])
+                await shell.attempt(shell.desk.do(lambda t: t.drive.apply_model(found[0])))
             else:
                 shell.say("fit a model first", bad=True)
-
-        async def off() -> None:
-            await use(None)
 
         with ui.row():
             shell.control(button("Fit", on_click=fit))
             shell.control(button("Apply", on_click=apply))
-            shell.control(button("Without model", on_click=off))
+            without = shell.doing(lambda t: t.drive.apply_model(None))
+            shell.control(button("Without model", on_click=without))
 
     def refresh() -> None:
         about = shell.telescope.observatory

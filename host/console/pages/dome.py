@@ -1,7 +1,7 @@
 """Dome and weather consoles (H7), and the power boards, as far as the network has them."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 from nicegui import ui
 
@@ -9,7 +9,6 @@ from bus.protocol.nodes import DOME, POWER, WEATHER
 from host.console.figures import number
 from host.console.pages.target import target
 from host.console.shell import OLD, Shell, box, button, stale, table
-from host.telescope import Telescope
 
 
 def dome(shell: Shell) -> None:
@@ -39,8 +38,9 @@ def _dome(shell: Shell) -> None:
             shell.control(button("Close shutter", on_click=shell.doing(lambda t: t.house.shutter(False))))
             button("Stop dome", on_click=shell.doing(lambda t: t.house.stop()))
         with ui.row():
-            for text, on in (("Follow the telescope", True), ("Stay", False)):
-                shell.control(button(text, on_click=shell.doing(_slave(on))))
+            follow = button("Follow the telescope", on_click=shell.doing(lambda t: t.house.slave(True)))
+            for each in (follow, button("Stay", on_click=shell.doing(lambda t: t.house.slave(False)))):
+                shell.control(each)
         interlock = ui.label("–").classes("mid")
 
     @shell.each
@@ -53,10 +53,6 @@ def _dome(shell: Shell) -> None:
         doing = "follows the telescope" if house.slaved else "stays where it is"
         following.set_text(f"The slit {doing}; the telescope needs it at {slit}.")
         interlock.set_text(interlock_text(house.unsafe(), found))
-
-
-def _slave(on: bool) -> Callable[[Telescope], None]:
-    return lambda telescope: telescope.house.slave(on)
 
 
 def dome_text(found: Mapping[str, float]) -> str:

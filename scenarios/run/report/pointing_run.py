@@ -68,9 +68,7 @@ def residuals(stars: Stars, model: PointingModel) -> Figure:
 def _arrows(stars: Stars, model: PointingModel) -> tuple[Array, Array, Array, Array]:
     """Places on the chart; reading less model there, ″, in the chart's directions."""
     h, d, latitude = stars.h, stars.d, stars.latitude_rad
-    ra, dec = model.axes_many(h, d)
-    west = (np.remainder(stars.ra - ra + np.pi, 2 * np.pi) - np.pi) * np.cos(d)
-    north = stars.dec - dec
+    west, north = stars.off(model)
     size = np.hypot(west, north)
     x, y = _chart(h, d, latitude)
     share = _SMALL_RAD / np.where(size > 0, size, 1.0)

@@ -15,7 +15,7 @@ from scipy.linalg import expm, solve_discrete_are, solve_discrete_lyapunov
 from plant.compiled import Floats
 from plant.effects import wind_torque
 from plant.gears import RATIO
-from plant.linear import ANGLE, RATE, ROTOR_A, ROTOR_B, SIZE, SPEED_A, SPEED_B, TORQUE_A, continuous
+from plant.linear import ANGLE, RATE, ROTOR_A, ROTOR_B, SIZE, SPEED_A, SPEED_B, TORQUE_A, continuous, stepped
 from plant.parts import EffectModel, PlantModel
 from plant.rows import values
 from plant.units import ARCSEC
@@ -121,9 +121,6 @@ def disturbed(model: PlantModel, wind: EffectModel) -> tuple[Floats, Floats, Flo
 def held(a: Floats, b: Floats, noise: Floats, seconds: float) -> tuple[Floats, Floats, Floats]:
     """Exact step with the input held: matrices of state and input, and what noise adds (Van Loan 1978)."""
     n = len(a)
-    both = np.zeros((n + b.shape[1], n + b.shape[1]))
-    both[:n, :n], both[:n, n:] = a, b
-    step = expm(both * seconds)
     pair = np.block([[-a, noise], [np.zeros((n, n)), a.T]])
     pieces = 64  # the fast winding would overflow in one
     found = expm(pair * (seconds / pieces))
@@ -132,4 +129,4 @@ def held(a: Floats, b: Floats, noise: Floats, seconds: float) -> tuple[Floats, F
     total = np.zeros((n, n))
     for _ in range(pieces):
         total = part @ total @ part.T + added
-    return step[:n, :n], step[:n, n:], (total + total.T) / 2
+    return *stepped(a, b, seconds), (total + total.T) / 2

@@ -51,12 +51,13 @@ def cases(compensation: bool) -> tuple[Case, ...]:
     rows = [Case(name=PAPER, firmware="paper"), Case(name="spread duty, bias, lock, blend")]
     if compensation:
         rows.append(Case(name="the same, compensated", compensated=True))
-    for effect in EFFECTS:
-        rows.append(Case(name=f"with {effect}", effects=(effect,)))
-    rows.append(Case(name="with all four", effects=EFFECTS))
-    rows.append(Case(name="with all four, the paper's firmware", effects=EFFECTS, firmware="paper"))
-    rows.append(Case(name="high preload, the paper's firmware", firmware="paper", high=True))
-    rows.append(Case(name="high preload, spread duty, bias, lock, blend", high=True))
+    rows += [Case(name=f"with {effect}", effects=(effect,)) for effect in EFFECTS]
+    rows += [
+        Case(name="with all four", effects=EFFECTS),
+        Case(name=f"with all four, {PAPER}", effects=EFFECTS, firmware="paper"),
+        Case(name=f"high preload, {PAPER}", firmware="paper", high=True),
+        Case(name="high preload, spread duty, bias, lock, blend", high=True),
+    ]
     for speed in SPEEDS_M_S:
         name = f"wind of {speed:g} m/s"
         rows.append(Case(name=f"{name}, {PAPER}", firmware="paper", wind_m_s=speed))
@@ -77,7 +78,7 @@ def ladder() -> tuple[Case, ...]:
     """The firmware's changes one after the other, on the declared plant and with all four effects."""
     rows = []
     for added, effects in (("", ()), (", all four effects", EFFECTS)):
-        rows.append(Case(name="the paper's firmware" + added, effects=effects, firmware="paper"))
+        rows.append(Case(name=PAPER + added, effects=effects, firmware="paper"))
         for place, (name, _) in enumerate(RUNGS, 1):
             left = tuple(int(number) for _, number in RUNGS[place:])
             rows.append(Case(name=f"+ {name}{added}", effects=effects, without=left))

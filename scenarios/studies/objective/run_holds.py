@@ -1,5 +1,6 @@
 """`schmidt objective`: the paper's objective on the emulated boards, from many starts."""
 
+import dataclasses
 import itertools
 import json
 import shlex
@@ -68,11 +69,10 @@ def _aligned(cells: tuple[str, ...]) -> str:
 
 def _given(options: ObjectiveOptions) -> list[str]:
     """The command line that says so again: what is not as it is by itself."""
-    default = ObjectiveOptions(out=options.out)
-    words = ["--steps"] if options.steps else []
-    for name in ("compensation", "starts", "seeds", "shift", "seconds", "plant", "plant_high", "only"):
-        value = getattr(options, name)
-        if value != getattr(default, name):
+    words = []
+    for field in dataclasses.fields(options):
+        value = getattr(options, field.name)
+        if field.name != "out" and value != field.default:
             text = f"{value:g}" if isinstance(value, int | float) else str(value)
-            words += [f"--{name.replace('_', '-')}", text]
+            words += [f"--{field.name.replace('_', '-')}", *([] if value is True else [text])]
     return words

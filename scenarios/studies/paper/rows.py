@@ -25,6 +25,11 @@ class Row:
         """E1 to E15."""
         return self.experiment.id
 
+    @property
+    def starts(self) -> int:
+        """From how many starts it was measured."""
+        return len(self.found) + len(self.failed)
+
     def values(self, figure: str) -> list[float]:
         """Return a figure at every start; NaN where it could not be measured."""
         return [figures.get(figure, NAN) for figures in self.found.values()]
@@ -67,7 +72,7 @@ class Row:
         middle, far = self.median(limit.figure), self.worst(limit)
         text = f"{limit.words} {_short(middle)}, worst {_short(far, limit.unit)} ({limit.bounds})"
         count = self.misses(limit)
-        return f"{text} at {count} of {len(self.found) + len(self.failed)} starts" if count else text
+        return f"{text} at {count} of {self.starts} starts" if count else text
 
     def lines(self, met: bool) -> list[str]:
         """What was found for each limit that is met, or missed."""

@@ -141,7 +141,7 @@ def paper(options: PaperOptions) -> int:
     command = f"schmidt paper --others {options.others}" if options.others else "schmidt paper"
     if options.vary:
         command += f" --vary {options.vary:g}{' --quick' if options.quick else ''}"
-        table = varied.markdown(found, command, options.vary, len(starts))
+        table = varied.markdown(found, command, options.vary)
     else:
         names = [Path(name).stem if name.endswith(".yaml") else name for name in files.values()]
         table = markdown(rows, names, command, date.today())

@@ -5,8 +5,8 @@ import pytest
 
 from bus.time import generator
 from host.camera.flat import PIXEL_RESPONSE, flat
-from host.camera.light import Window, light
-from host.camera.models import CAMERAS, GUIDE, MAIN, CameraModel
+from host.camera.light import light
+from host.camera.models import CAMERAS, GUIDE, MAIN, CameraModel, Window
 from host.camera.readout import bloom, read_out
 from host.camera.seeing import Wander
 from host.camera.stars import stars
@@ -91,12 +91,12 @@ def test_a_bright_star_blooms_up_and_down_and_not_across() -> None:
 @pytest.mark.parametrize("model", CAMERAS)
 def test_pixels_differ_by_a_per_cent_about_one(model: CameraModel) -> None:
     left, top, size = model.width // 2 - 150, model.height // 2 - 150, 300
-    response = flat(model, left, top, size, size)
+    response = flat(model, Window(left=left, top=top, width=size, height=size))
     assert response.mean() == pytest.approx(1.0, abs=4 * PIXEL_RESPONSE / size)
     assert response.std() == pytest.approx(PIXEL_RESPONSE, rel=0.02)
     neighbours = np.corrcoef(response[:, 1:].ravel(), response[:, :-1].ravel())[0, 1]
     assert abs(neighbours) < 0.02
-    part = flat(model, left + 20, top + 30, 40, 50)
+    part = flat(model, Window(left=left + 20, top=top + 30, width=40, height=50))
     assert np.array_equal(part, response[30:80, 20:60])
 
 
@@ -107,6 +107,6 @@ def test_a_corner_sees_the_aperture_and_the_sky_aslant() -> None:
     for left, top in ((0, 0), ((MAIN.width - size) // 2, (MAIN.height - size) // 2)):
         window = Window(left=left, top=top, width=size, height=size)
         sky = light(MAIN, path(0.1), window, far, NAINITAL, CLOCK, wander)
-        levels.append(float(sky.mean() * flat(MAIN, left, top, size, size).mean()))
+        levels.append(float(sky.mean() * flat(MAIN, window).mean()))
     cosine = np.cos(np.arctan((2048 - size / 2) * np.sqrt(2) * 0.009 / 500))
     assert levels[0] / levels[1] == pytest.approx(cosine**4, abs=4 * PIXEL_RESPONSE / size)

@@ -8,8 +8,8 @@ import pytest
 
 from bus.time import generator
 from host.camera.camera import Frame, Order, expose
-from host.camera.light import Window, light
-from host.camera.models import GUIDE, MAIN, CameraModel, Look
+from host.camera.light import light
+from host.camera.models import GUIDE, MAIN, CameraModel, Look, Window
 from host.camera.seeing import Wander
 from host.camera.stars import SyntheticSky, stars
 from host.sky.catalogue import STARS

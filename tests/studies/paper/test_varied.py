@@ -39,19 +39,20 @@ def test_each_number_is_off_alone_below_and_above_at_both_preloads() -> None:
 
 
 def test_the_section_tells_what_falls_here_and_stands_there() -> None:
+    few = STARTS[:2]
     always = Experiment(
         id="E2", limits=(Limit(figure="peak", unit="%", high=1.0, words="peak"),), measure=dict
     )
-    found = {"J -10 %": [row(12.0), Row(always, {STARTS[0]: {"peak": 3.0}})],
-             "J +10 %": [row(40.0), Row(always, {STARTS[0]: {"peak": 2.0}})]}  # fmt: skip
-    text = markdown(found, "schmidt paper --vary 10", 10.0, 8)
-    assert "from 8 starts, E7 and E8 from 2" in text
+    found = {"J -10 %": [row(12.0), Row(always, {each: {"peak": 3.0} for each in few})],
+             "J +10 %": [row(40.0), Row(always, {each: {"peak": 2.0} for each in few})]}  # fmt: skip
+    text = markdown(found, "schmidt paper --vary 10", 10.0)
+    assert "Measured from 2 starts, E1 from 1." in text
     assert "| E1 | · | **miss** |" in text and "| E2 | **miss** | **miss** |" in text
     assert "| J +10 % | E1 | peak (10–25) | 40 % |" in text
     assert "| J -10 % | E1 |" not in text and "% | E2 |" not in text  # which is missed everywhere
     failed = Row(experiment(), {}, {STARTS[0]: "it does not move"})
     assert "| b | E1 | not evaluated: it does not move |  |" in markdown(
-        {"a": [row(12.0)], "b": [failed]}, "", 1, 1
+        {"a": [row(12.0)], "b": [failed]}, "", 1
     )
 
 
