@@ -171,7 +171,7 @@ def _unit_of(view: View, channel: str) -> str:
 def _held(view: View, records: list[Run], names: list[str], valid: Mask, shown: list[Array]) -> Mask:
     """Named files; of three and more one that the others cover; else the end of every run's `valid` rows.
 
-    Its middle or beginning, where the end goes far beyond the others in a column of `shown`.
+    Its middle or beginning, where the end goes far beyond the others in columns of `shown`, all together.
     """
     session = view.file[view.rows]
     if names:

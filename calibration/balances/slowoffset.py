@@ -25,14 +25,15 @@ LINE = 2.0  # times what they leave: one slow line that leaves no more is no wal
 
 
 def slow_columns(view: View, held: Mask, order: int) -> Array:
-    """(n_fitted, k): mean and cosines per file, `order` in a whole one; held-out stretches have their own."""
+    """(n_fitted, k): mean and cosines per file, `order` in a whole one; fitted and held-out rows apart."""
     file, t = view.file[view.rows], view.t[view.rows]
     out = []
-    for a, b in pieces(2 * file + held):
-        whole, length = np.ptp(t[file == file[a]]), max(float(t[b - 1] - t[a]), 1e-300)
-        count = max(round(order * length / max(whole, length)), min(order, 1))
-        waves = np.cos(np.pi * np.arange(count + 1)[:, None] * (t[a:b] - t[a]) / length)
-        out += [np.concatenate([np.zeros(a), wave, np.zeros(len(t) - b)]) for wave in waves]
+    for k in np.unique(file):
+        whole = np.ptp(t[file == k])
+        for mine in ((file == k) & part for part in (~held, held) if part[file == k].any()):
+            begin, length = float(t[mine].min()), max(float(np.ptp(t[mine])), 1e-300)
+            count = max(round(order * length / max(whole, length)), min(order, 1))
+            out += [np.where(mine, np.cos(np.pi * j * (t - begin) / length), 0.0) for j in range(count + 1)]
     return np.column_stack(out)
 
 

@@ -174,7 +174,7 @@ def settle(findings: list[Finding], left: Left | None, channel: str) -> list[Fin
     shapes = [f for f in findings if f.name == UNKNOWN]
     if shapes:  # a function that stays says more than names that do not
         return [shapes[0].noted(note), *shapes[1:]]
-    theirs = left.domain if left.part * left.share > (1 - left.part) * first.share else None  # of the whole
+    theirs = left.domain if left.part * left.share > first.share else None  # of the whole
     return [replace(_unknown(theirs or first.domain, channel, left, note), equivalent=names)]
 
 
@@ -190,7 +190,8 @@ def of_one_domain(findings: list[Finding], left: Left | None) -> list[Finding]:
     out: list[Finding] = []
     for f in findings:
         own = f.stage is not None and turn == f"over the turn of {f.stage}"
-        more = turn == ALONE if f.domain == "time" else smooth or own
+        much = left is not None and left.part * left.share > limits.PLAINLY * f.share  # of the whole
+        more = turn == ALONE and much if f.domain == "time" else smooth or own
         if f.name not in NAMES or not NAMES[f.name].a_guess or not more:
             out.append(f)
             continue

@@ -68,7 +68,7 @@ def look_at_drift(runs: list[Run], rig: Rig | None, options: Options) -> Looked:
         s, jumped = with_jumps(s, partial(_when, sections, p))
         held_out = [f"pieces of {piece_s(p):.0f} s, in turn"]
         notes.append(OF_ALL_FRAMES)
-    few = f"fewer than {LEAST_TURNS:.0f} turns in one section"
+    few = f"fewer than {LEAST_TURNS:.0f} turns in one section, and too few in all"
     slow = [f"{part.name} ({few})" for part in mount.parts if not is_seen(problem, part.rate)]
     if len(slow) > FEW and not mount.named:  # the log names no mount that is known
         slow = [f"{len(slow)} of the usual worms ({few})"]

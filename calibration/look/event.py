@@ -11,6 +11,7 @@ from calibration.arrays import Array, Mask, by_median
 from calibration.balances.floors import floor_of
 from calibration.balances.problem import Problem
 from calibration.balances.view import View
+from calibration.decide.selection import Selection
 from calibration.decide.thresholds import CLEAR_SHARE, PLAINLY, STILL_MISSING
 from calibration.finding import UNKNOWN, Finding
 from calibration.look.delay import Make
@@ -27,12 +28,17 @@ SHORT = 0.1
 ROUNDS = 20
 
 
-def leave_out_event(view: View, made: Make) -> Finding | None:
-    """The event, whose rows are no longer `ok` in the view; None where there is none. made: by a delay, s."""
-    p = made(0.0)
-    x = np.column_stack([p.base, scene_of(view, p.once).wander])
-    friction = abs(p.plain_fit(p.train)[0].get("coulomb", 0.0))  # that turns leaves twice itself at most
-    rows = _stretch(p, x, max(STILL_MISSING * (floor_of(view, p)[0] or 0.0), 2 * friction))
+def leave_out_event(view: View, made: Make, s: Selection) -> Finding | None:
+    """The event, whose rows are no longer `ok` in the view; None where names of `s` explain the log, or where
+    there is none. made: the balance by a delay, s."""
+    p = made(0.0).once
+    floor = floor_of(view, p)[0] or 0.0
+    if max(s.held.after, float(np.sqrt(s.fitted_square))) <= STILL_MISSING * floor:
+        return None
+    x = np.column_stack([p.base, scene_of(view, p).wander])
+    known = view.rig.constants.get("coulomb", 0.0)
+    friction = abs(p.plain_fit(p.train)[0].get("coulomb", known))  # that turns leaves twice itself at most
+    rows = _stretch(p, x, max(STILL_MISSING * floor, 2 * friction))
     if rows is None:
         return None
     every, rest = (_usual(p, x, rows, out) for out in (np.zeros_like(rows), rows))
@@ -48,14 +54,14 @@ def leave_out_event(view: View, made: Make) -> Finding | None:
 
 
 def _stretch(p: Problem, x: Array, least: float) -> Mask | None:
-    """The one stretch (n,) of fitted rows that holds most of what columns x (n, k) leave.
+    """The one stretch (n,) of rows that holds most of what columns x (n, k) leave on the fitted ones.
 
-    None where it is not short, or its rms is no more than the least.
+    None where it is not short, or its rms is no more than the least. It may go on into held-out rows.
     """
-    e = _robust(x[p.train], p.y[p.train])
-    square, far = np.zeros(len(p.y)), np.zeros(len(p.y), dtype=bool)
-    square[p.train] = e**2
-    far[p.train] = np.abs(e) > max(FAR * by_median(e), SLOPES * float(np.max(np.abs(e), initial=0.0)))
+    e = p.y - x @ _robust(x[p.train], p.y[p.train])
+    square, size = np.where(p.train, e**2, 0.0), np.where(p.valid, np.abs(e), 0.0)
+    largest = float(np.max(size[p.train], initial=0.0))
+    far = size > max(FAR * by_median(e[p.train]), SLOPES * largest)
     stretches, count = label(binary_dilation(far, iterations=p.block))
     if not count:
         return None
@@ -64,18 +70,18 @@ def _stretch(p: Problem, x: Array, least: float) -> Mask | None:
     rows = (np.arange(len(far)) >= at[0]) & (np.arange(len(far)) <= at[-1])
     one_file = len(np.unique(p.session[rows])) == 1
     holds_most = float(square[rows].sum()) > CLEAR_SHARE * float(square.sum())
-    shows = float(square[at].mean()) > least**2
+    shows = float(np.mean(size[at] ** 2)) > least**2
     return rows if one_file and holds_most and shows and rows.sum() < SHORT * p.train.sum() else None
 
 
 def _robust(x: Array, y: Array) -> Array:
-    """Residual (n,) of the fit with the least sum of absolute residuals."""
-    e = y - x @ solve(x, y)
+    """Coefficients (k,) of the fit with the least sum of absolute residuals."""
+    beta = solve(x, y)
     for _ in range(ROUNDS):
-        least = max(float(np.median(np.abs(e))), 1e-300)
-        weight = 1.0 / np.sqrt(np.maximum(np.abs(e), 0.1 * least))
-        e = y - x @ solve(x * weight[:, None], y * weight)
-    return np.asarray(e)
+        e = np.abs(y - x @ beta)
+        weight = 1.0 / np.sqrt(np.maximum(e, 0.1 * max(float(np.median(e)), 1e-300)))
+        beta = solve(x * weight[:, None], y * weight)
+    return beta
 
 
 def _usual(p: Problem, x: Array, event: Mask, out: Mask) -> float:

@@ -10,7 +10,7 @@ from calibration.arrays import Array
 from calibration.balances.balance import problem_of
 from calibration.balances.floors import floor_of, resolved_rows
 from calibration.balances.problem import Problem
-from calibration.balances.slowoffset import offset_order
+from calibration.balances.slowoffset import offset_order, slowness
 from calibration.balances.view import View, fade
 from calibration.decide.controls import controls, order_beside
 from calibration.decide.onecolumn import by_one_column
@@ -32,6 +32,7 @@ from calibration.look.search import find, scene_of
 from calibration.look.settled import few_values, law_of_its_loop, one_filter, sharpest, turned
 from calibration.look.slips import slipped
 
+SWAYS = 6  # waves that a zero may make within a file: along more moves it follows none. ASSUMPTION
 WANDERS = 2.0  # times the rms between files, that a zero may wander within one. ASSUMPTION
 #: of a finding
 OWN = (
@@ -45,8 +46,6 @@ def look_at_forces(view: View, records: list[Run], options: Options) -> Balance:
     made = partial(problem_of, view, records, options.hold_out)
     if view.dynamic:
         one_filter(view, made)
-    event = leave_out_event(view, made)
-    if view.dynamic:
         fade(view, sharpest(view, made))
     problem = made()
     if few := few_values(records, view, problem) or law_of_its_loop(
@@ -56,6 +55,12 @@ def look_at_forces(view: View, records: list[Run], options: Options) -> Balance:
         return Balance(key=problem.channel, row=ROWS[problem.channel], selection=bare, needs=[few])
     notes = turned(view, problem)
     when, remarks = _found(view, made)
+    event = leave_out_event(view, made, when.found[0]) if view.response.is_force else None
+    if event is not None:
+        view.slow_offset = None
+        if view.dynamic:
+            fade(view, sharpest(view, made))
+        when, remarks = _found(view, made)
     told = _told(view, when, notes, remarks)
     return replace(told, findings=[*told.findings, event]) if event else told
 
@@ -100,12 +105,13 @@ def _found(view: View, made: Make) -> tuple[Timed, list[str]]:
     return (_apart(when, view, made, wander) if view.slow_offset == 0 else when), remarks
 
 
-def _of_the_zero(f: Finding, effect: Array, offsets: Finding | None) -> Finding:
-    """`f`, or an unknown where its effect (n,) over time is no larger than the files' own constants differ.
+def _of_the_zero(f: Finding, effect: Array, offsets: Finding | None, view: View) -> Finding:
+    """`f`, or an unknown where its effect (n,) over time is hardly larger than the files' constants differ.
 
-    That zero may wander within a file, too.
+    That zero may wander within a file, too. Along a few moves it follows their direction by chance.
     """
-    if offsets is None or f.domain != "time" or np.std(effect) > WANDERS * offsets.parameters["rms"].value:
+    slow = offsets is not None and f.domain == "time" and f.frequency is None and slowness(view) < SWAYS
+    if offsets is None or not slow or np.std(effect) > WANDERS * offsets.parameters["rms"].value:
         return f
     alike = (f.name, *(x for x in f.equivalent if x != UNKNOWN))
     one = replace(f, name=UNKNOWN, equivalent=alike, parameters={})
@@ -164,7 +170,7 @@ def _told(view: View, when: Timed, notes: list[str], remarks: list[str]) -> Bala
     notes = [*notes, *filter(None, [when.note]), f"floor of {channel}: {source}", *filtered(view), *still]
     s, together, beyond = by_one_column(*beyond_names(s, scene), scene)
     named = [
-        _of_the_zero(replace(f, share=x), s.effect(k)[problem.train], when.offsets)
+        _of_the_zero(replace(f, share=x), s.effect(k)[problem.train], when.offsets, view)
         for k, x in enumerate(s.worth)
         for f in findings_of(s, k)
     ]

@@ -101,7 +101,8 @@ def law_of_its_loop(view: View, p: Problem, floor: float | None) -> str:
     ]
     constant, slope, rate = solve(x, p.y[rows])
     least = min(STILL_MISSING * floor, EXACT * float(np.std(p.y[rows])))
-    if slope >= 0 or not rms(p.y[rows] - x @ [constant, slope, rate]) <= least:
+    forces = rms(p.plain_fit(rows)[1][rows])  # a mass along one sine pulls back in proportion, too
+    if slope >= 0 or forces <= least or not rms(p.y[rows] - x @ [constant, slope, rate]) <= least:
         return ""
     return (
         f"{view.response.channel} is {constant:.4g} {unit} {slope:+.4g} {unit}/{view.angle_unit} x position."

@@ -35,6 +35,7 @@ CLEAR = 5.0
 # of all reversals, that may have a jump: play jumps at every one, and back at the next. ASSUMPTION
 PLAYS = 0.5
 BESIDE = 2  # fitted rows, by which the filter may have moved a slip. ASSUMPTION: a standard deviation is one
+BORDER = 24  # rows at either side of a file's border that show no slip. ASSUMPTION
 TRIED = 33  # places that are tried about a slip, and once more about the best of them. ASSUMPTION
 
 
@@ -46,7 +47,7 @@ def slipped(whole: Problem, found: Found, view: View, find: Find) -> Timed:
     # steps look like something slow
     s = s.keep([x for x in s.chosen if (x.candidate.name, x.candidate.domain) != (UNKNOWN, "time")])
     # where a file begins, columns that look back are no measurement
-    begins = maximum_filter1d(np.diff(s.problem.session, prepend=-1) != 0, 2 * SIDES[-1] + 1)
+    begins = maximum_filter1d(np.diff(s.problem.session, prepend=-1) != 0, 2 * BORDER + 1)
     places, turns = [at for at in jumps_of(s, CLEAR) if not begins[at]], _turns(view, s.problem)
     turning = {at for at in places if np.any(np.abs(turns - at) <= SIDES[0])}
     if len(turning) > PLAYS * len(turns):

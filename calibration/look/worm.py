@@ -145,10 +145,11 @@ def _search(problem: Problem, mount: Mount, seen: list[Part], span: float) -> Se
         stage = chosen.candidate.stage
         if stage in by_name:
             kept = {x.candidate.key for x in s.chosen if x is not chosen}
-            candidates = [x for x in candidates if x.key in kept]
-            candidates += best_count(problem, s, mount, by_name[stage])
-            again = settle(problem, candidates, mount.named)
-            s = again if again.held.after <= s.held.after else s
+            other = [x for x in candidates if x.key in kept]
+            other += best_count(problem, s, mount, by_name[stage])
+            again = settle(problem, other, mount.named)
+            if again.held.after <= s.held.after:
+                s, candidates = again, other
     return s
 
 

@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 
+import numpy as np
+
 from calibration.finding import UNKNOWN, Parameter
 from calibration.names.name import Beside, Facts, Finding, Made, Name, Scene, as_found, value
 from calibration.names.onsets import steps
@@ -9,6 +11,7 @@ from calibration.names.onsets import steps
 FOREVER_S = 1e6  # s: longer than any log. ASSUMPTION
 LESS = ("friction_warmup", "preload_change")  # friction that falls from some time on
 CHANGES = ("brake_drag", "preload_change")  # friction that is another from some time on
+VARIES = 0.3  # of the mean speed, rms, beyond which friction is no offset. ASSUMPTION
 IN_TIME = ("brake_drag", "friction_warmup")  # forces against the motion that come or go
 
 
@@ -34,7 +37,9 @@ def one_way(f: Finding, s: Scene) -> Finding:
         return f
     if f.name == NAME.name and f.parameters["torque"].value < 0.0:
         f = replace(f, equivalent=tuple(dict.fromkeys([*f.equivalent, *LESS])))
-    if s.both and not offset:
+    speed = np.abs(s.view.speed[s.view.ok])
+    tells = f.name != NAME.name and np.std(speed) > VARIES * np.mean(speed)  # friction changes with speed
+    if (s.both or tells) and not offset:
         return f
     alike = (f.name, *(x for x in f.equivalent if x != UNKNOWN))
     why = f"{'' if s.both else 'one way only, '}an offset of the column that changes looks the same"

@@ -89,7 +89,7 @@ def lines(s: Scene, follows: Array, large_first: bool = True) -> list[Candidate]
 
             rings = len(overtones) == 1 and not MODE.lacks(s)
             # other joints may move along: sums of their frequencies are multiples, too
-            along = np.min(np.abs(multiples - f), initial=np.inf) * length < 0.5
+            along = repeats * length >= TURNS and np.min(np.abs(multiples - f), initial=np.inf) * length < 0.5
             more["twins"] = (*((MODE.name,) if rings else ()), *places, *((UNKNOWN,) if along else ()))
             at, step, size = {"frequency": (f, "Hz")}, STEP_OF_CELL / fitted, ("amplitude", s.unit)
             out.append(tried(NAME.name, shape, size, at=at, steps=(step,), frequency=f, **more))

@@ -1,10 +1,14 @@
 """An effort whose zero walks: no effect of the drive, told, and no cover for effects that are there."""
 
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from calibration.finding import Finding, Parameter
+from calibration.look.forces import _of_the_zero
 from tests.calibration.test_drives import COULOMB, FORCE, answer, found, motion
 
 PERIOD_S = 0.005
@@ -71,13 +75,27 @@ def test_a_constant_of_every_files_own_is_real_and_has_no_name(tmp_path: Path) -
     assert data["calibrated"]["coulomb"]["value"] == pytest.approx(COULOMB, rel=0.03)
 
 
-@pytest.mark.parametrize(("drag", "named"), [(0.3, False), (2.5, True)])
-def test_what_comes_within_a_file_is_more_than_files_differ_by(
-    tmp_path: Path, drag: float, named: bool
+ROWS = 4000
+ZERO = Finding("unknown", "T", "time", parameters={"rms": Parameter(0.4, "N")})
+DRAG = Finding("brake_drag", "T", "time", parameters={"torque": Parameter(0.3, "N")})
+
+
+@pytest.mark.parametrize(
+    ("moves", "size", "found", "named"),
+    [
+        (4, 0.3, DRAG, False),
+        (40, 0.3, DRAG, True),
+        (4, 1.5, DRAG, True),
+        (4, 0.3, replace(DRAG, frequency=1.3), True),
+    ],
+)
+def test_along_a_few_moves_a_zero_that_differs_from_file_to_file_is_no_brake(
+    moves: int, size: float, found: Finding, named: bool
 ) -> None:
-    """Zeros of three files lie 0.4 N apart, rms: a drag of less may be a zero that moved."""
-    tables = files(6, 0.0, drag)
-    zeros = [(t, x, u + zero) for (t, x, u), zero in zip(tables, (0.5, -0.5, 0.1), strict=True)]
-    data = answer(tmp_path, FORCE, *zeros)
-    own = {"brake_drag", "friction_warmup", "preload_change"}
-    assert bool(own & {e["name"] for e in data["effects"]}) is named
+    """Nothing that wanders follows many moves, has a frequency, or goes far beyond what files show."""
+    way = np.sign(np.sin(np.pi * moves * (np.arange(ROWS) + 0.5) / ROWS))
+    view = SimpleNamespace(file=np.zeros(ROWS, dtype=np.int64), direction=way)
+    told = _of_the_zero(found, size * way, ZERO, view)  # type: ignore[arg-type]
+    assert (told.name == "brake_drag") is named
+    assert named or told.equivalent == ("brake_drag",)
+    assert _of_the_zero(found, size * way, None, view) is found  # type: ignore[arg-type]

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.calibration.test_drives import COULOMB, FORCE, MASS, answer, motion
+from tests.calibration.test_drives import COULOMB, FORCE, MASS, SENSORS, answer, motion
 
 PUSH_N = 60.0
 
@@ -36,3 +36,12 @@ def test_what_comes_back_is_no_event(tmp_path: Path) -> None:
 def test_a_sound_motion_has_no_event(tmp_path: Path) -> None:
     data = answer(tmp_path, FORCE, pushed())
     assert data["verdict"] == "nothing"
+
+
+def test_an_effect_that_names_the_stretch_is_no_event(tmp_path: Path) -> None:
+    """A slip between two sensors in a short file keeps its name."""
+    t, x, _ = motion(4.0)
+    y = 0.02 * x + 1e-5 * np.random.default_rng(5).standard_normal(len(t))
+    data = answer(tmp_path, SENSORS, (t, x, y + 2e-3 * (t > 2.0)), (t, x, y))
+    assert [e["name"] for e in data["effects"]] == ["roller_slip"]
+    assert "left out" not in str(data)

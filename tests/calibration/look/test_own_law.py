@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.calibration.test_drives import FORCE, PERIOD, answer
+from tests.calibration.test_drives import FORCE, MASS, PERIOD, VISCOUS, answer
 
 GAIN, SET_POINT = 40.0, 0.5
 
@@ -14,7 +14,7 @@ GAIN, SET_POINT = 40.0, 0.5
 def looped(disturbed: float = 0.0, gain: float = GAIN) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """t, x and u = gain (set point - x) of a mass with friction, swinging in; and a force nobody logs."""
     t = np.arange(0, 20.0, PERIOD)
-    x = SET_POINT * (1 - np.exp(-0.15 * t) * np.cos(2.1 * t))
+    x = SET_POINT * (1 - np.exp(-0.15 * t) * np.cos(2.1 * t)) + 0.05 * np.exp(-0.1 * t) * np.sin(5.0 * t)
     u = gain * (SET_POINT - x) + disturbed * np.sin(0.7 * t)
     return t, x, u + 0.005 * np.random.default_rng(3).standard_normal(len(t))
 
@@ -33,3 +33,13 @@ def test_a_spring_or_another_force_is_none(tmp_path: Path, disturbed: float, gai
     """A spring pulls the other way: the effort grows with the place."""
     data = answer(tmp_path, FORCE, looped(disturbed, gain))
     assert "law of a loop" not in str(data)
+
+
+def test_a_mass_that_swings_at_one_frequency_keeps_its_numbers(tmp_path: Path) -> None:
+    """Its force is as the place, too, and its declared terms say as much."""
+    t, w = np.arange(0, 20.0, PERIOD), 2 * np.pi * 0.5
+    x = 0.2 * np.sin(w * t)
+    u = -MASS * w**2 * x + VISCOUS * 0.2 * w * np.cos(w * t)
+    data = answer(tmp_path, FORCE, (t, x, u + 0.005 * np.random.default_rng(3).standard_normal(len(t))))
+    assert "law of a loop" not in str(data)
+    assert data["calibrated"]["inertia"]["value"] == pytest.approx(MASS, rel=0.02)
