@@ -51,7 +51,9 @@ def scene(force: bool = True) -> Any:
         sigma=PERIOD_S,
         step=PERIOD_S,
     )  # fmt: skip
-    return SimpleNamespace(view=view, force=force, both=False, span=0.0, temperature=None, model=None, unit="N m")
+    return SimpleNamespace(
+        view=view, force=force, both=False, span=0.0, temperature=None, model=None, unit="N m"
+    )
 
 
 def of(y: np.ndarray, files: int = 1, **more: Any) -> Selection:
@@ -92,7 +94,8 @@ def test_what_neighbours_share_and_no_domain_has_lives_over_time_alone() -> None
 
 
 @pytest.mark.parametrize(
-    ("floor", "of_force", "of_sensors"), [(1 / 1.5, False, False), (1 / 1.8, True, False), (1 / 2.2, True, True)]
+    ("floor", "of_force", "of_sensors"),
+    [(1 / 1.5, False, False), (1 / 1.8, True, False), (1 / 2.2, True, True)],
 )
 def test_a_force_tells_from_fewer_floors_on_than_sensors_do(
     floor: float, of_force: bool, of_sensors: bool
@@ -193,7 +196,9 @@ def test_nothing_found_and_a_domain_is_an_unknown_with_its_size() -> None:
     assert (found.note, found.share) == ("4.0 floors are left over time", 0.5)
 
 
-def beyond(y: np.ndarray, floor: float, force: bool = True, drag: np.ndarray | None = None) -> tuple[Selection, Selection, list[Finding]]:
+def beyond(
+    y: np.ndarray, floor: float, force: bool = True, drag: np.ndarray | None = None
+) -> tuple[Selection, Selection, list[Finding]]:
     s = of(y, floor=floor)
     if drag is not None:
         one = fit_with(s.problem, s.problem.base, term("brake_drag", drag[:, None]))

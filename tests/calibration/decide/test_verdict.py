@@ -42,7 +42,7 @@ def test_the_first_effect_decides_between_found_and_ambiguous_and_any_has_experi
 @pytest.mark.parametrize(
     ("channel", "row", "kind"),
     [
-        ("T", {"torque": {"floor": 1.0, "after": STILL_MISSING}}, "sole"),
+        ("T", {"torque": {"floor": 2.0, "after": 2 * STILL_MISSING}}, "sole"),
         ("K", {"position": {"floor": 1.0, "after": 1.0}}, "sole"),
         ("E", {"electrical": {"floor": 1.0, "after": 1.0}}, "sole"),
         ("S", {"velocity": {"floor": 1.0, "after": 1.0}}, "sole"),
