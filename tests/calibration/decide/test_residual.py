@@ -36,23 +36,27 @@ CLOCK = PERIOD_S * np.arange(ROWS)
 WAVE = 2.0 * np.sin(2 * np.pi * X)  # beside noise of one: two thirds of the square
 
 
-def scene(force: bool = True) -> Any:
+STAGES = [SimpleNamespace(name="worm", period=0.1), SimpleNamespace(name="frame", period=0.0)]
+
+
+def scene(force: bool = True, x: np.ndarray = X, sigma: float = PERIOD_S, **columns: np.ndarray) -> Any:
     """As much of a scene as the domains need: place, speed, time, and a worm of ten turns."""
     view = SimpleNamespace(
         rows=slice(None),
-        x=X,
+        x=x,
         clock=CLOCK,
         speed=np.roll(X, 1234),
         direction=WAY,
-        rig=SimpleNamespace(stages=[SimpleNamespace(name="worm", period=0.1), SimpleNamespace(name="frame", period=0.0)]),
+        rig=SimpleNamespace(stages=STAGES),
         response=SimpleNamespace(is_speed=False, channel="force"),
-        columns={},
+        columns=columns,
         dynamic=False,
-        sigma=PERIOD_S,
+        sigma=sigma,
         step=PERIOD_S,
-    )  # fmt: skip
+    )
+    at = np.asarray
     return SimpleNamespace(
-        view=view, force=force, both=False, span=0.0, temperature=None, model=None, unit="N m"
+        view=view, force=force, both=False, span=0.0, temperature=None, model=None, unit="N m", at=at
     )
 
 
@@ -89,8 +93,58 @@ def test_what_neighbours_share_and_no_domain_has_lives_over_time_alone() -> None
     assert left is not None and (left.where, left.domain) == (ALONE, "time")
     # correlation of neighbours: 0.5 / (0.5 + 0.09), squared
     assert left.share == pytest.approx((0.5 / 0.59) ** 2, abs=0.05)
+    little = left_over(of(np.sin(2 * np.pi * CLOCK / 40.0) + 0.2 * WAVE), scene(), 0.1)
+    assert little is not None and little.where == ALONE  # of which the place has an eighth
     both = left_over(of(0.5 * y + 5 * WAVE), scene(), 0.1)
     assert both is not None and both.where == "over axis angle"
+
+
+def test_a_place_that_is_passed_slowly_is_not_time_alone() -> None:
+    place = np.abs((CLOCK / 40.0) % 2.0 - 1.0)
+    left = left_over(of(np.sin(2 * np.pi * place) + 0.3 * NOISE), scene(x=place), 0.1)
+    assert left is not None and left.where == "over axis angle"
+
+
+@pytest.mark.parametrize(
+    ("rows", "sigma", "alone"),
+    [(8, PERIOD_S, False), (4, 0.0, True), (3, 0.0, False), (200, PERIOD_S, True)],
+)
+def test_neighbours_of_one_filter_share_what_it_smears(rows: int, sigma: float, alone: bool) -> None:
+    """Of a mean over n rows the correlation k rows later is 1 - k / n; four sigma later no filter's is left."""
+    left = left_over(of(np.convolve(NOISE, np.ones(rows) / rows, "same")), scene(sigma=sigma), 1e-3)
+    assert left is not None and (left.where == ALONE) is alone
+
+
+@pytest.mark.parametrize("scale", [1.0, 1e-3])
+@pytest.mark.parametrize(("files", "share"), [(3, (9 * 2 / 3 + 9 * 2 / 3 - 8) / 19), (2, None)])
+def test_of_three_files_each_is_held_against_the_others(
+    files: int, share: float | None, scale: float
+) -> None:
+    """The last one has no wave, whose square is 8 beside 1: of the others' mean half is left, of it eight."""
+    file = np.arange(ROWS) * files // ROWS
+    held = file == 2 if files == 3 else problem(X).held
+    s = of(scale * (np.where(held, 0.0, 2 * WAVE) + NOISE), files, held=held)
+    left = left_over(s, scene(), 0.1 * scale)
+    assert left is not None and left.domain == (None if share is None else "axis_angle")
+    assert left.share == pytest.approx(share or 0.0, abs=0.06)
+
+
+def test_at_the_very_limit_nothing_is_left_over() -> None:
+    s = of(NOISE)
+    half = s.held.after / 2
+    assert left_over(s, scene(False), half) is None
+    s.problem.resolved = (np.ones(ROWS, dtype=bool), half)
+    assert left_over(s, scene(), 10.0) is None
+    of_held = np.flatnonzero(s.problem.held)
+    for rows, told in ((FEWEST_TOLD, True), (FEWEST_TOLD - 1, False)):
+        s.problem.resolved = (np.isin(np.arange(ROWS), of_held[:rows]), 0.1)
+        assert (left_over(s, scene(), 10.0) is not None) is told
+
+
+def test_a_louder_file_says_nothing_of_its_one_speed() -> None:
+    file = np.arange(ROWS) * 2 // ROWS
+    s = of((1.0 + 2.0 * file) * NOISE, 2, held=np.arange(ROWS) % 2 == 0)
+    assert lives_in(s, [Place("speed", "velocity", file + 0.1 * X)])[0] is None
 
 
 @pytest.mark.parametrize(
@@ -138,8 +192,12 @@ def test_the_part_that_is_left_is_of_the_square_above_the_floor() -> None:
 def test_a_shape_over_a_place_is_found_of_the_motor_that_leaves_most() -> None:
     """Of two motors, one after the other; the second leaves a function of the place."""
     half = np.arange(ROWS) >= ROWS // 2
-    y = np.where(half, WAVE, 0.0) + NOISE
-    s = of(y, held=np.arange(ROWS) % 2 == 0)
+    held = np.arange(ROWS) % 2 == 0  # the first one is louder, but on rows that were fitted
+    y = np.where(half, WAVE, 0.0) + np.where(half | held, 1.0, 3.0) * NOISE
+    assert [lives_in(of(sign * y, held=held), [Place("", "time", X)], 2)[0] for sign in (1, -1)] == [
+        "time"
+    ] * 2
+    s = of(np.where(half, WAVE, 0.0) + NOISE, held=held)
     places = [Place("place", "axis_angle", X), Place("time", "time", CLOCK)]
     domain, share, words = lives_in(s, places, 2)
     assert (domain, words) == ("axis_angle", "over place") and share == pytest.approx(2 / 3, abs=0.05)
@@ -155,6 +213,11 @@ def test_eight_bins_of_ten_rows_are_the_fewest() -> None:
     assert domain_share(x - 3.5, x, train, ~train) == pytest.approx(1.0)
     for few in (np.arange(160) < 79, np.arange(160) < 81):
         assert domain_share(x - 3.5, x, few, ~few) == 0.0
+    assert domain_share(x - 3.5, x / 7.0, train, ~train) == pytest.approx(1.0)
+    # half of the fitted rows are at the last place; beyond it nothing is known, so nothing is taken
+    tied = np.where(np.arange(160) < 40, 7.0, x)
+    beyond = np.where((~train) & (x == 7.0), 9.0, tied)
+    assert 0.0 < domain_share(x - 3.5, beyond, train, ~train) < 0.9
     # of 250 rows 24 bins, as many as there are at most: a wave of 25 places keeps the last two together
     x = np.tile(np.arange(24.0), 40)
     train = np.arange(960) < 480
@@ -191,20 +254,27 @@ def test_names_that_leave_most_give_their_domain_or_that_of_the_rest(share: floa
     assert found.equivalent == ["cable_wrap", "brake_drag"] and found.share == share
 
 
+def test_as_large_a_part_keeps_the_names_domain() -> None:
+    (found,) = settle([named(share=0.75)], Left(4.0, 0.75, "time", "over time", 0.25), "T")
+    assert found.domain == "axis_angle"
+    (worse,) = settle([named()], Left(4.0, 1.75), "T")
+    assert worse.note.startswith("brake_drag would take -75 % of")
+
+
 def test_nothing_found_and_a_domain_is_an_unknown_with_its_size() -> None:
     (found,) = settle([], Left(4.0, 1.0, "time", "over time", 0.5), "T")
     assert (found.note, found.share) == ("4.0 floors are left over time", 0.5)
 
 
 def beyond(
-    y: np.ndarray, floor: float, force: bool = True, drag: np.ndarray | None = None
+    y: np.ndarray, floor: float, force: bool = True, drag: np.ndarray | None = None, **columns: np.ndarray
 ) -> tuple[Selection, Selection, list[Finding]]:
     s = of(y, floor=floor)
     if drag is not None:
         one = fit_with(s.problem, s.problem.base, term("brake_drag", drag[:, None]))
         assert one is not None
         s = s.keep([one])
-    return beyond_names(s, scene(force))
+    return beyond_names(s, scene(force, **columns))
 
 
 def test_a_function_of_the_place_that_nobody_named_is_found_as_one() -> None:
@@ -226,6 +296,7 @@ def test_what_is_little_above_the_floor_is_not_called_missing() -> None:
     whole = float(np.std(WAVE + NOISE))
     assert beyond(2 * drag + WAVE + NOISE, whole, drag=drag)[2] == []
     assert beyond(WAVE + NOISE, 1.01 * whole)[2] == []  # the floor holds it all
+    assert beyond(WAVE + NOISE, of(WAVE + NOISE).held.after)[2] == []
     # a little above the floor, but most of it goes with the function
     assert [f.domain for f in beyond(WAVE + NOISE, 0.95 * whole)[2]] == ["axis_angle"]
     assert beyond(0.6 * WAVE + NOISE, 0.95 * float(np.std(0.6 * WAVE + NOISE)))[2] == []
@@ -238,6 +309,25 @@ def test_of_two_sensors_one_function_of_a_force_more() -> None:
         alone, together, found = beyond(1.5 * WAVE + speed + NOISE, 0.3, force)
         assert {f.domain for f in found} == domains and not alone.chosen
         assert len(together.chosen) == len(domains)
+
+
+def test_two_functions_are_the_most_of_two_sensors() -> None:
+    third = np.roll(X, 777)
+    y = sum(2.0 * np.sin(2 * np.pi * x) for x in (X, np.roll(X, 1234), third)) + NOISE
+    assert len(beyond(np.asarray(y), 0.3, False, effort=third)[2]) == 2
+
+
+def test_a_name_that_a_function_of_its_domain_displaces_is_refused() -> None:
+    speed = np.roll(X, 1234)
+    s = of(3.0 * np.sin(2 * np.pi * speed) + 0.3 * NOISE, floor=0.1)
+    one = fit_with(
+        s.problem, s.problem.base, replace(term("viscous_change", speed[:, None]), domain="velocity")
+    )
+    assert one is not None
+    s = s.keep([one])
+    alone, together, (found,) = beyond_names(s, scene())
+    assert found.domain == "velocity" and [c.name for c in together.candidates] == [UNKNOWN]
+    assert not alone.chosen and "a smooth function of velocity" in alone.refused[-1].why
 
 
 def test_a_quick_line_of_the_column_is_an_unknown_of_time(monkeypatch: pytest.MonkeyPatch) -> None:

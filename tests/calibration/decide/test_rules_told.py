@@ -90,7 +90,7 @@ def test_what_is_worth_less_than_its_name_needs_goes(
     ("names", "left", "gone"),
     [
         # of 90 that all take, 0.95 is 85.5, and 0.03 is 2.7
-        (["brake_drag", "load_friction"], {"bl": 10.0, "b": 12.6, "l": 99.0}, 1),
+        (["brake_drag", "load_friction"], {"bl": 10.0, "b": 12.65, "l": 99.0}, 1),
         (["brake_drag", "load_friction"], {"bl": 10.0, "b": 12.8, "l": 99.0}, None),
         (["load_friction", "brake_drag"], {"bl": 10.0, "b": 12.6, "l": 99.0}, 0),
         # what follows another column stays, if a quarter of what is left without it is its own
@@ -118,6 +118,8 @@ def test_a_name_that_harms_is_worth_nothing_of_all() -> None:
 def test_the_strongest_takes_nineteen_twentieths_alone(alone: float, name: str) -> None:
     assert dominant(Told(["brake_drag", "play"], {"bp": 10.0, "b": alone, "p": 90.0})) == name  # type: ignore
     assert dominant(Told(["brake_drag", "play"], {"bp": 101.0, "b": 100.0, "p": 100.0})) == ""  # type: ignore
+    small = Told(["brake_drag", "play"], {"bp": 0.1, "b": 0.101, "p": 0.4}, before=0.5)
+    assert dominant(small) == "brake_drag"  # type: ignore[arg-type]
     assert dominant(Told([], {"": 100.0})) == ""  # type: ignore[arg-type]
     twice = Told(["brake_drag", "play", "brake_drag"], {"bbp": 10.0, "bb": alone, "p": 90.0})
     assert dominant(twice) == name  # type: ignore[arg-type]
@@ -170,7 +172,8 @@ def test_most_must_go_and_not_by_luck_below_the_floor(share: float, z: float, fo
     s.before = SimpleNamespace(residual=np.full(4, 1.9))
     for floor, kept in ((0.9, True), (1.0, found)):  # fitted rows are 1.9, held-out ones 1
         s.problem = SimpleNamespace(train=train, floor=floor, resolved=None)
-        assert (below_floor(s) is None) == kept
+        gone = (0, "the declared model is at the floor without it")
+        assert below_floor(s) == (None if kept else gone)
     s.before.residual = np.full(4, 2.1)
     assert below_floor(s) is None
 
