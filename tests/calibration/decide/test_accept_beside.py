@@ -116,8 +116,8 @@ def test_up_to_four_times_the_log_would_decide(per_log: float, share: float, z: 
     who = contender(evidence=3.5, after=lambda k: per_log * k)
     why = refuse(who, GOOD, scored(share, z), 0.05, 1)
     assert why == (
-        f"the log is too short for it: it lowers the held-out mean square by {100 * share:.0f} %, but -log10 p"
-        f" is 3.5 of 4.0. A log {times} times as long would decide." if times
+        f"the log is too short for it: it lowers the held-out mean square by {100 * share:.0f} %, but"
+        f" -log10 p is 3.5 of 4.0. A log {times} times as long would decide." if times
         else "too little evidence (-log10 p = 3.5)"
     )  # fmt: skip
 

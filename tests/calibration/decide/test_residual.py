@@ -110,7 +110,7 @@ def test_a_place_that_is_passed_slowly_is_not_time_alone() -> None:
     [(8, PERIOD_S, False), (4, 0.0, True), (3, 0.0, False), (200, PERIOD_S, True)],
 )
 def test_neighbours_of_one_filter_share_what_it_smears(rows: int, sigma: float, alone: bool) -> None:
-    """Of a mean over n rows the correlation k rows later is 1 - k / n; four sigma later no filter's is left."""
+    """Of a mean over n rows the correlation k rows on is 1 - k / n; at four sigma a filter has none."""
     left = left_over(of(np.convolve(NOISE, np.ones(rows) / rows, "same")), scene(sigma=sigma), 1e-3)
     assert left is not None and (left.where == ALONE) is alone
 
@@ -241,7 +241,8 @@ def test_names_that_leave_most_are_said_beside_the_function_that_stays() -> None
     second = replace(shape, domain="velocity")
     many = [named(), shape, named("cable_wrap", 0.1), named(), second]
     found = settle(many, Left(4.0, 0.75, "time", "over time", 0.9), "T")
-    note = "brake_drag, cable_wrap would take 25 % of what is above the floor only: 4.0 floors are left over time"
+    size = "4.0 floors are left over time"
+    note = f"brake_drag, cable_wrap would take 25 % of what is above the floor only: {size}"
     assert found == [replace(shape, note=note), second]
 
 
