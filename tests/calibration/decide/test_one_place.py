@@ -35,6 +35,14 @@ def test_beside_a_function_of_the_place_it_is_a_class_of_that() -> None:
     assert told([*RUNOUT, SMOOTH]) == [(UNKNOWN, ("encoder_eccentricity",)), (UNKNOWN, ())]
 
 
+def test_guesses_at_two_places_are_two_and_each_says_what_has_more_of_it() -> None:
+    found = of_one_domain([*RUNOUT, CABLE, SMOOTH], None)
+    assert [f.equivalent for f in found] == [["encoder_eccentricity"], ["cable_wrap"], ()]
+    assert [f.note for f in found] == ["the place has more of it than this form"] * 2 + [""]
+    (disturbed,) = of_one_domain([DISTURBED], Left(8.0, 0.4, "time", "over time alone", 0.9))
+    assert disturbed.note == "time has more of it than this form"
+
+
 def test_a_weight_is_no_guess() -> None:
     assert told([WEIGHT, SMOOTH]) == [("gravity_imbalance", ()), (UNKNOWN, ())]
 
@@ -79,7 +87,7 @@ DISTURBED = Finding("command_disturbance", "T", "time", frequency=0.35, paramete
 
 @pytest.mark.parametrize(
     ("where", "share", "named"),
-    [("over time alone", 0.9, False), ("over time alone", 0.4, True), ("over time", 0.9, True)],
+    [("over time alone", 0.9, False), ("over time alone", 0.5, True), ("over time", 0.9, True)],
 )
 def test_a_line_in_time_is_part_of_what_time_alone_has(where: str, share: float, named: bool) -> None:
     """A wave beside a slow drift is a wave; beside quick motions of something else it is one of these."""
