@@ -10,6 +10,7 @@ from host.camera.models import Look
 from host.sky.catalogue import Star
 from host.sky.mount import STEPS_PER_TURN
 from host.sky.observed import observe
+from plant.air import best_focus_m
 from plant.mount import sky
 from plant.plant import Plant
 from scenarios.language.model import Scenario
@@ -54,11 +55,12 @@ class Eye:
 
 
 def look(plant: Plant, scenario: Scenario, t_ns: int) -> Look:
-    """Where the true telescope looks, the mount's errors included, and where its focus truly is."""
+    """Where the true telescope looks, the mount's errors included, and how far its focus is from the best."""
     mount, rad = scenario.mount, 2 * math.pi / STEPS_PER_TURN
     ra = plant.ra.truth(t_ns)[0] - mount.ra.zero_steps * rad
     dec = plant.dec.truth(t_ns)[0] - mount.dec.zero_steps * rad
-    focus_m, errors = plant.focus.position_m(t_ns), plant.model.mount
+    focus_m = plant.focus.position_m(t_ns) - best_focus_m(plant.model, t_ns)
+    errors = plant.model.mount
     if errors is None:
         return Look(t_ns, ra, dec, 0.0, focus_m)
     hour_angles, declinations = sky([ra, ra], [dec, dec + _UP_RAD], scenario.site.latitude_rad, errors)

@@ -116,7 +116,9 @@ def crystal(seed: int, name: str, settings: NodeConfig) -> Oscillator:
 class _Wiring:
     """The parts all boards share while they are being made."""
 
-    def __init__(self, config: NetworkConfig, plant: Plant, seed: int, devices: tuple[Device, ...]) -> None:
+    def __init__(
+        self, config: NetworkConfig, plant: Plant, seed: int, devices: tuple[Device, ...], humidity: float
+    ) -> None:
         self.config = config
         self.devices = devices
         self.plant = plant
@@ -124,7 +126,7 @@ class _Wiring:
         self.queue = EventQueue()
         self.wire = Wire(self.queue, config.bitrate)
         self.boards: dict[str, Board] = {}
-        self.site = Site(plant, self.boards)
+        self.site = Site(plant, self.boards, humidity)
 
     def place(self, name: str, kind: int) -> Place:
         oscillator = crystal(self.seed, name, self.config.node(name))
@@ -243,14 +245,17 @@ _IN_AVR = ("MOTOR_", "DISPLAY")
 """Boards that need the bus alone: the emulated AVR has no RS232, no USB and no pins to the plant."""
 
 
-def build(config: NetworkConfig | None, plant: Plant, seed: int) -> Network:
-    """The network, every board running from time 0 on; raises NetworkError for settings that cannot be."""
+def build(config: NetworkConfig | None, plant: Plant, seed: int, humidity: float = 0.5) -> Network:
+    """The network, every board running from time 0 on; raises NetworkError for settings that cannot be.
+
+    humidity: relative, of the air, 0 to 1.
+    """
     config = config or NetworkConfig()
     devices = devices_of(config)
     size = len(devices) if config.size is None else config.size
     if not 1 <= size <= _MAXIMUM_NODES:
         raise NetworkError(f"network: size {size} is not within 1..{_MAXIMUM_NODES}")
-    wiring = _Wiring(config, plant, seed, devices[:size])
+    wiring = _Wiring(config, plant, seed, devices[:size], humidity)
     boards = wiring.boards
     _check_firmware(config)
     for device in wiring.devices:

@@ -17,6 +17,7 @@ from boards.dome.firmware import DomeBoard
 from boards.power.firmware import PowerBoard
 from boards.weather.firmware import WeatherBoard
 from bus.protocol.nodes import KINDS, KindError, arguments_of, check_kind, messages_of
+from plant.air import Air
 from plant.dome import DomePort
 from plant.plant import Plant
 from scenarios.language.model import Scenario
@@ -90,8 +91,9 @@ class Input:
 class Site:
     """What declared boards' pins may be wired to: the plant's ports, the dome, the supplies."""
 
-    def __init__(self, plant: Plant, boards: Mapping[str, Board]) -> None:
+    def __init__(self, plant: Plant, boards: Mapping[str, Board], humidity: float) -> None:
         self.ra, self.dec, self.focus = plant.ra, plant.dec, plant.focus
+        self.air = Air(plant.model, humidity)
         self.dome = DomePort()
         self.supplies = {name: Supply(plant, boards, channels) for name, channels in CHANNELS.items()}
         self.parts: dict[str, object] = {}
@@ -100,7 +102,7 @@ class Site:
     def pin(self, name: str, pin: Pin, inputs: Mapping[str, Input]) -> Callable[..., float]:
         """The callable for one pin of board `name`; raises KindError when there is no such thing."""
         if not pin.source:
-            return inputs.get(pin.name) or Input([0], [pin.default])
+            return inputs.get(pin.name) or self._free(name, pin)
         port_name, _, method = pin.source.format(side=name.rpartition("_")[2].lower()).partition(".")
         own: dict[str, Mapping[str, object]] = {"supply": self.supplies, "part": self.parts}
         port = own[port_name].get(name) if port_name in own else getattr(self, port_name, None)
@@ -109,6 +111,11 @@ class Site:
             raise KindError(f"board {name}: pin {pin.name}: there is no {pin.source} to wire it to")
         wired: Callable[..., float] = found
         return wired
+
+    def _free(self, name: str, pin: Pin) -> Callable[..., float]:
+        """The air's, at a weather station; else what the board says of a pin that no scenario sets."""
+        air = getattr(self.air, pin.name, None) if name in WeatherBoard.KIND.nodes else None
+        return air or Input([0], [pin.default])
 
 
 def pins_of(

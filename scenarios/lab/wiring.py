@@ -6,6 +6,7 @@ from bus.time import generator
 from bus.units import ARCSEC_PER_RAD
 from host.procedures.manual import AXES
 from host.sky.mount import STEP_ARCSEC
+from plant.air import with_air
 from plant.model import PlantModel
 from plant.plant import Plant
 from plant.stops import with_stops
@@ -32,9 +33,10 @@ def powered(scenario: Scenario, model: PlantModel) -> Network:
     soft_rad = {axis: (low * _STEP_RAD, high * _STEP_RAD) for axis, (low, high) in limits.items()}
     wind_from = scenario.network.get("wind_from")
     built = model if wind_from is None else in_the_wind(model)
-    pins = Plant(with_stops(built, soft_rad), scenario.seed, start_steps(scenario))
+    built = with_air(with_stops(built, soft_rad), scenario.site.temperature_c)
+    pins = Plant(built, scenario.seed, start_steps(scenario))
     config = config_from(scenario.network, limits, scenario.file.parent)
-    made = build(config, pins, scenario.seed)
+    made = build(config, pins, scenario.seed, scenario.site.humidity)
     made.chain = chained(made, soft_rad, scenario.network.get("chain", SWITCHES))
     if wind_from is not None:
         made.blowing = Blowing(made, wind_from / ARCSEC_PER_RAD)
