@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from plant.parts import Number, PlantModel
+from plant.parts import Environment, Number, PlantModel
 
 EXPANSION_M_PER_K = 6e-6
 """Of the place of best focus: 12e-6 1/K of a steel tube (ASSUMPTION) over 0.5 m, the focal length (paper)."""
@@ -24,7 +24,7 @@ class Air:
 
     def temperature(self, t_ns: int) -> float:
         """Degrees Celsius at a time of the run."""
-        return self._environment.temperature.si + self._environment.warming.si * t_ns * 1e-9
+        return _celsius(self._environment, t_ns)
 
     def humidity(self, _t_ns: int) -> float:
         """Relative, per cent."""
@@ -33,4 +33,8 @@ class Air:
 
 def best_focus_m(model: PlantModel, t_ns: int) -> float:
     """Place of best focus from the middle of the travel: a warm tube is longer."""
-    return EXPANSION_M_PER_K * (Air(model, 0.0).temperature(t_ns) - IN_FOCUS_C)
+    return EXPANSION_M_PER_K * (_celsius(model.environment, t_ns) - IN_FOCUS_C)
+
+
+def _celsius(air: Environment, t_ns: int) -> float:
+    return air.temperature.si + air.warming.si * t_ns * 1e-9

@@ -33,7 +33,8 @@ def leave_out_event(view: View, made: Make, s: Selection) -> Finding | None:
     there is none. made: the balance by a delay, s."""
     p = made(0.0).once
     floor = floor_of(view, p)[0] or 0.0
-    if max(s.held.after, float(np.sqrt(s.fitted_square))) <= STILL_MISSING * floor:
+    left = max(s.held.after, float(np.sqrt(s.fitted_square)))
+    if left <= STILL_MISSING * floor or not (p.train.any() and p.test.any()):
         return None
     x = np.column_stack([p.base, scene_of(view, p).wander])
     known = view.rig.constants.get("coulomb", 0.0)
@@ -88,4 +89,5 @@ def _usual(p: Problem, x: Array, event: Mask, out: Mask) -> float:
     """Usual square beside columns x (n, k), fitted without the rows `out`, on held-out rows that are not the
     event's: they may hold another one."""
     rows, test = p.train & ~out, p.test & ~event
-    return by_median(p.y[test] - x[test] @ solve(x[rows], p.y[rows])) ** 2
+    left = p.y[test] - x[test] @ solve(x[rows], p.y[rows])
+    return by_median(left) ** 2 if len(left) else float("nan")

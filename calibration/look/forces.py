@@ -115,7 +115,7 @@ def _of_the_zero(f: Finding, effect: Array, offsets: Finding | None, view: View)
         return f
     alike = (f.name, *(x for x in f.equivalent if x != UNKNOWN))
     one = replace(f, name=UNKNOWN, equivalent=alike, parameters={})
-    return one.noted("no larger than what the zero differs by from file to file")
+    return one.noted("hardly larger than what the zero differs by from file to file")
 
 
 def _apart(when: Timed, view: View, made: Make, size: float) -> Timed:

@@ -1,10 +1,9 @@
 """Jumps of a position at constant rate: a mirror that tips over, a cable that slips. They never come back."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from calibration.arrays import Array, by_median
@@ -72,19 +71,20 @@ def jumps_of(s: Selection, least: float) -> list[int]:
         rest = np.where(p.valid, p.y - x @ solve(x[p.valid], p.y[p.valid]), np.nan)
         for at in places:  # it jumped in one of them; a second one as near would be the way back
             rest[max(at - BETWEEN, 0) : at + BETWEEN] = np.nan
-        clear, at = max(_clearest(rest, p.run, side) for side in SIDES)
+        steps = {side: _steps(rest, p.run, side) for side in SIDES}
+        clear, at = max(_clearest(steps, side) for side in SIDES)
         if clear < least:
             return sorted(places)
         places.append(at)
     return []
 
 
-def _clearest(rest: Array, run: NDArray[np.int64], side: int) -> tuple[float, int]:
+def _clearest(steps: Mapping[int, Array], side: int) -> tuple[float, int]:
     """The largest step that few rows show as well, and many more, over what is usual, and its row.
 
     Waves have steps, too, which grow with the rows that are looked at.
     """
-    sizes, near, far = (_steps(rest, run, rows) for rows in (side, SIDES[0], min(LASTS * side, SIDES[-1])))
+    sizes, near, far = (steps[rows] for rows in (side, SIDES[0], min(LASTS * side, SIDES[-1])))
     if not np.isfinite(sizes).any():
         return 0.0, 0
     usual, own = (by_median(x[np.isfinite(x)]) or np.inf for x in (sizes, near))
@@ -100,7 +100,7 @@ def _steps(rest: Array, run: NDArray[np.int64], side: int) -> Array:
     weights = np.linalg.pinv(np.column_stack([np.ones(2 * side), at, at > 0]))[2]
     out = np.full(len(rest), np.nan)
     if len(rest) > 2 * side:
-        one_run = sliding_window_view(run, 2 * side)
-        found = sliding_window_view(rest, 2 * side) @ weights
-        out[side : side + len(found)] = np.where(one_run[:, 0] == one_run[:, -1], found, np.nan)
+        one_run = run[2 * side - 1 :] == run[: len(run) - 2 * side + 1]
+        found = np.correlate(rest, weights, mode="valid")
+        out[side : side + len(found)] = np.where(one_run, found, np.nan)
     return out

@@ -18,7 +18,7 @@ from calibration.statistics.regression import solve
 from calibration.statistics.tails import rms
 
 #: responses that a loop commands
-EFFORTS = ("effort", "current", "voltage")
+COMMANDED = ("effort", "current", "voltage")
 # of its variation, that such a law leaves at most. ASSUMPTION: friction's corners leave more
 EXACT = 0.01
 # amplitude behind a filter, below which a wave is not seen there. ASSUMPTION: as little as half is still seen
@@ -93,7 +93,7 @@ def law_of_its_loop(view: View, p: Problem, floor: float | None) -> str:
 
     A loop at rest at one set point pulls back, in proportion to the place; a drive's own forces do not.
     """
-    if not view.dynamic or view.response.channel not in EFFORTS or not floor:
+    if not view.dynamic or view.response.channel not in COMMANDED or not floor:
         return ""
     rows, unit = p.valid, view.unit
     x = np.column_stack([np.ones(len(p.y)), view.x[view.rows], view.at(view.smoothed(view.rate(view.x)))])[
@@ -106,7 +106,7 @@ def law_of_its_loop(view: View, p: Problem, floor: float | None) -> str:
         return ""
     return (
         f"{view.response.channel} is {constant:.4g} {unit} {slope:+.4g} {unit}/{view.angle_unit} x position."
-        " That is the law of a loop with one set point, beside which no force shows: let it move"
+        " That is the law of a loop with one set point, beside which no force shows: move the set point"
     )
 
 

@@ -63,17 +63,21 @@ def harmonics(problem: Problem, rate: float, waves: Sequence[int]) -> Array:
     return np.column_stack(parts) if parts else np.zeros((len(problem.t), 0))
 
 
+def _spans(problem: Problem) -> list[float]:
+    """Fitted seconds of every section."""
+    t, run = problem.t[problem.train], problem.run[problem.train]
+    return [float(np.ptp(t[run == k])) for k in np.unique(run)]
+
+
 def is_seen(problem: Problem, rate: float) -> bool:
     """Whether one section holds turns enough of a part, or all sections together that show its phase."""
-    t, run = problem.t[problem.train], problem.run[problem.train]
-    turns = [float(np.ptp(t[run == k])) * rate for k in np.unique(run)]
+    turns = [span * rate for span in _spans(problem)]
     return max(turns, default=0.0) >= LEAST_TURNS or sum(x for x in turns if x >= LEAST_IN_SECTION) >= IN_ALL
 
 
 def longest_span(problem: Problem) -> float:
     """Fitted seconds of the longest section: a period must be seen again within one section."""
-    t, run = problem.t[problem.train], problem.run[problem.train]
-    return max((float(np.ptp(t[run == k])) for k in np.unique(run)), default=0.0)
+    return max(_spans(problem), default=0.0)
 
 
 def part_candidates(problem: Problem, mount: Mount, part: Part, counts: Sequence[int]) -> list[Candidate]:

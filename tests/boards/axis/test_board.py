@@ -19,14 +19,6 @@ from bus.protocol.serial import NO_SETPOINT, AxisSample, PacketDecoder
 from tests.boards.lab import CENTRE, RA, STEP_ARCSEC, Lab
 
 
-@pytest.fixture
-def lab() -> Lab:
-    lab = Lab()
-    lab.run(0.1)
-    assert lab.command(Opcode.POWER, 1).result == Result.OK
-    return lab
-
-
 def steps(arcsec: float) -> int:
     return round(arcsec / STEP_ARCSEC)
 

@@ -29,14 +29,6 @@ BOUNDS = {
 }  # fmt: skip
 
 
-@pytest.fixture
-def lab() -> Lab:
-    lab = Lab()
-    lab.run(0.1)
-    assert lab.command(Opcode.POWER, 1).result == Result.OK
-    return lab
-
-
 def test_B1_what_the_papers_firmware_lacks_is_off_at_first() -> None:
     table = Lab().axis.parameters
     assert [table.get(number).value for number in range(12, 69)] == [0, 0, 0, 1] + [0] * 53

@@ -19,14 +19,6 @@ from tests.boards.lab import Lab
 ONE = 1 << 16
 
 
-@pytest.fixture
-def lab() -> Lab:
-    lab = Lab()
-    lab.run(0.1)
-    assert lab.command(Opcode.POWER, 1).result == Result.OK
-    return lab
-
-
 def put(lab: Lab, number: int, value: int) -> None:
     assert lab.command(Opcode.SET_PARAMETER, number, value).result == Result.OK
 

@@ -4,20 +4,12 @@ import math
 
 import pytest
 
-from bus.protocol import AxisMode, AxisParameter, Opcode, Result
+from bus.protocol import AxisMode, AxisParameter, Result
 from tests.boards.lab import Lab
 
 FIRST = AxisParameter.HARMONIC_FIRST
 CONSTANT = {FIRST + 1: 50 << 8, AxisParameter.COMPENSATION: 1}
 """A line of order 0: fifty steps everywhere."""
-
-
-@pytest.fixture
-def lab() -> Lab:
-    lab = Lab()
-    lab.run(0.1)
-    assert lab.command(Opcode.POWER, 1).result == Result.OK
-    return lab
 
 
 def put(lab: Lab, values: dict[int, int]) -> None:
