@@ -104,10 +104,8 @@ def law_of_its_loop(view: View, p: Problem, floor: float | None) -> str:
     forces = rms(p.plain_fit(rows)[1][rows])  # a mass along one sine pulls back in proportion, too
     if slope >= 0 or forces <= least or not rms(p.y[rows] - x @ [constant, slope, rate]) <= least:
         return ""
-    return (
-        f"{view.response.channel} is {constant:.4g} {unit} {slope:+.4g} {unit}/{view.angle_unit} x position."
-        " That is the law of a loop with one set point, beside which no force shows: move the set point"
-    )
+    told = f"{constant:.4g} {unit} - {-slope:.4g} {unit}/{view.angle_unit} x position"
+    return f"{view.response.channel} is {told}. That is the law of a loop with one set point, beside which no force shows: move the set point"
 
 
 def turned(view: View, problem: Problem) -> list[str]:

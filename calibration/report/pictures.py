@@ -39,8 +39,10 @@ def of_balance(b: Balance) -> list[Picture]:
         image = plots.spectrum_plot(s, b.spectrum, f"Amplitude over {over}, {name}")
         out.append({"image": image, "alt": SPECTRUM})
     trace = plots.trace_plot(s, b.declared or s, f"Held-out residual before and after, {name}")
-    gate = plots.gate_plot(s, f"Is anything there at all? {name}")
-    return [*out, {"image": trace, "alt": TRACE}, {"image": gate, "alt": plots.GATE}]
+    out.append({"image": trace, "alt": TRACE})
+    if len(s.scores.surrogate_max):  # something was looked for
+        out.append({"image": plots.gate_plot(s, f"Is anything there at all? {name}"), "alt": plots.GATE})
+    return out
 
 
 def _effect(b: Balance, k: int) -> Picture:

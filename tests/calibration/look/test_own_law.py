@@ -6,6 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from calibration.command import calibrate
+from calibration.report.pictures import TRACE
+from calibration.report.plots import GATE
 from tests.calibration.test_drives import FORCE, MASS, PERIOD, VISCOUS, answer
 
 GAIN, SET_POINT = 40.0, 0.5
@@ -22,10 +25,10 @@ def looped(disturbed: float = 0.0, gain: float = GAIN) -> tuple[np.ndarray, np.n
 def test_the_law_is_told_in_place_of_a_force(tmp_path: Path) -> None:
     data = answer(tmp_path, FORCE, looped())
     assert data["verdict"] == "cannot tell" and not data["effects"]
-    told = re.search(r"effort is (\S+) N (\S+) N/m x position\. That is the law of a loop", str(data))
+    told = re.search(r"effort is (\S+) N - (\S+) N/m x position\. That is the law of a loop", str(data))
     assert told is not None
     assert float(told[1]) == pytest.approx(GAIN * SET_POINT, rel=0.01)
-    assert float(told[2]) == pytest.approx(-GAIN, rel=0.01)
+    assert float(told[2]) == pytest.approx(GAIN, rel=0.01)
 
 
 @pytest.mark.parametrize(("disturbed", "gain"), [(1.0, GAIN), (0.0, -GAIN)])
@@ -43,3 +46,11 @@ def test_a_mass_that_swings_at_one_frequency_keeps_its_numbers(tmp_path: Path) -
     data = answer(tmp_path, FORCE, (t, x, u + 0.005 * np.random.default_rng(3).standard_normal(len(t))))
     assert "law of a loop" not in str(data)
     assert data["calibrated"]["inertia"]["value"] == pytest.approx(MASS, rel=0.02)
+
+
+def test_a_page_has_no_empty_picture_or_table_where_nothing_was_looked_for(tmp_path: Path) -> None:
+    answer(tmp_path, FORCE, looped())
+    assert calibrate([tmp_path / "run0.csv"], tmp_path / "rig.yaml", [], tmp_path / "seen") == 0
+    page = (tmp_path / "seen" / "report.html").read_text()
+    assert TRACE.split(",")[0] in page
+    assert not any(x in page for x in (GATE, "Declared model, re-calibrated", "Gate and negative controls"))
