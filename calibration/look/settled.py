@@ -105,7 +105,8 @@ def law_of_its_loop(view: View, p: Problem, floor: float | None) -> str:
     if slope >= 0 or forces <= least or not rms(p.y[rows] - x @ [constant, slope, rate]) <= least:
         return ""
     told = f"{constant:.4g} {unit} - {-slope:.4g} {unit}/{view.angle_unit} x position"
-    return f"{view.response.channel} is {told}. That is the law of a loop with one set point, beside which no force shows: move the set point"
+    why = "That is the law of a loop with one set point, beside which no force shows: move the set point"
+    return f"{view.response.channel} is {told}. {why}"
 
 
 def turned(view: View, problem: Problem) -> list[str]:
