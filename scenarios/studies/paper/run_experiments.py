@@ -54,16 +54,15 @@ def run_rows(
 ) -> dict[str, list[Row]]:
     """Return the rows by drive: every experiment at every start is a job of its own with its own simulation.
 
-    Of several drives the dear rows are measured at every fourth start only. workers: processes. scheduler:
-    address of a Dask cluster instead. progress: told after every job which it was and its row.
+    workers: processes. scheduler: address of a Dask cluster instead. progress: told after every job which it
+    was and its row.
     """
-    few = varied.DEAR if len(many) > 1 else ()
     ranks = {name: rank for rank, name in enumerate(DEAREST)}
     jobs = {
         f"{drive} {row.id} {place}": (drive, row.id, start)
         for row in sorted(experiments, key=lambda row: ranks.get(row.id, len(ranks)))
         for drive in many
-        for place, start in enumerate(starts[::4] if row.id in few else starts)
+        for place, start in enumerate(starts)
     }
     outcomes: dict[str, Outcome] = {}
     tasks = ((key, (many[drive], name, start)) for key, (drive, name, start) in jobs.items())
@@ -126,8 +125,7 @@ def paper(options: PaperOptions) -> int:
     (out / ".probe").unlink()
     begin = monotonic()
     many = varied.variations(plants, options.vary) if options.vary else {"": plants}
-    few = varied.DEAR if options.vary else ()
-    total = len(many) * sum(len(starts[::4] if row.id in few else starts) for row in chosen)
+    total = len(many) * len(chosen) * len(starts)
     with shown("experiments", total) as tell:
         found = run_rows(
             many, chosen, starts, workers=options.jobs, scheduler=options.scheduler, progress=tell

@@ -26,8 +26,6 @@ NUMBERS: Final[Mapping[str, Change]] = {
     "Ts": _number("friction.stiction"),
 }
 """Inertia with the rotors', torque constant and EMF, winding, Coulomb friction, stiction."""
-DEAR: Final = ("E7", "E8")
-"""Rows that take most of a core's time: from every fourth start."""
 
 
 def variations(plants: Plants, percent: float) -> dict[str, Plants]:
@@ -47,7 +45,7 @@ _HEAD = """## One number of the drive off
     {command}
 
 Each of J, K, R, Tc and Ts is off by {percent:g} %, one at a time, at both preloads; the controller stays.
-Measured from {starts}. A dot: every limit holds at every start.
+Measured from {starts} starts. A dot: every limit holds at every start.
 E7 and E8 hold the drive that is there against what is printed, so they are to find a number that is off.
 """
 
@@ -55,10 +53,8 @@ E7 and E8 hold the drive that is there against what is printed, so they are to f
 def markdown(found: Mapping[str, Sequence[Row]], command: str, percent: float) -> str:
     """Return what stands and what falls as a section of a page: a table, and by how much a row falls that
     stands elsewhere."""
-    counts = {rows[0].id: min(row.starts for row in rows) for rows in zip(*found.values(), strict=True)}
-    most = max(counts.values())
-    few = [f"{row} from {count}" for row, count in counts.items() if count < most]
-    head = _HEAD.format(command=command, percent=percent, starts=", ".join([f"{most} starts", *few]))
+    starts = min(row.starts for rows in found.values() for row in rows)
+    head = _HEAD.format(command=command, percent=percent, starts=starts)
     lines = [head, "| row | " + " | ".join(found) + " |", "|---|" + "---|" * len(found)]
     falls = ["", "| off | row | missed by most (limit) | worst |", "|---|---|---|---|"]
     for rows in zip(*found.values(), strict=True):
