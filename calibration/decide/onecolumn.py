@@ -4,7 +4,7 @@ from calibration.decide.parameters import finding_of
 from calibration.decide.rules import OTHER_COLUMNS
 from calibration.decide.select import select
 from calibration.decide.selection import Refusal, Selection
-from calibration.decide.thresholds import AS_MUCH
+from calibration.decide.thresholds import AS_MUCH, STILL_MISSING
 from calibration.finding import UNKNOWN, Finding
 from calibration.names.scene import Scene
 from calibration.names.unknown import smooth_functions
@@ -23,7 +23,8 @@ def by_one_column(
         columns = [c for c in smooth_functions(scene) if c.domain in OTHER_COLUMNS]
         alone = select(s.problem, columns, most=1, before=s.looked_at)
         scene.model = model
-        if alone.chosen and alone.held.taken > AS_MUCH * together.held.taken:
+        as_little = alone.held.after <= STILL_MISSING * max(together.held.after, s.problem.floor)
+        if alone.chosen and as_little and alone.held.taken > AS_MUCH * together.held.taken:
             why = f"{alone.candidates[0].say()} over {alone.candidates[0].domain} alone takes as much"
             instead = [Refusal(c.say(), why) for c in together.candidates]
             alone.refused = [*s.refused, *instead, *alone.refused]

@@ -14,7 +14,7 @@ from calibration.balances.problem import Problem
 from calibration.balances.view import View
 from calibration.decide import thresholds as limits
 from calibration.decide.parameters import finding_of
-from calibration.decide.rules import clear, displaced, leave_out
+from calibration.decide.rules import clear, displaced, larger_than_the_response, leave_out
 from calibration.decide.select import select
 from calibration.decide.selection import Selection
 from calibration.finding import UNKNOWN, Finding, Parameter
@@ -224,6 +224,9 @@ def beyond_names(s: Selection, scene: Scene) -> tuple[Selection, Selection, list
         own = tuple(together.model.phases)
         beside_names = replace(s.problem, base=together.columns, base_phases=own)
         more = select(beside_names, offered, most=1, before=s.looked_at)
+        while more.chosen and larger_than_the_response(more, 0):
+            offered = [c for c in offered if c.key != more.candidates[0].key]
+            more = select(beside_names, offered, most=1, before=s.looked_at)
         s.refused += more.refused
         # what is little is no function of anything, unless most of it goes with that
         if not more.chosen or (scene.force and little and not clear(more)):

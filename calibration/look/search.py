@@ -79,7 +79,7 @@ def _search(view: View, problem: Problem) -> tuple[Selection, Scene]:
         if shapes and k == 0:  # beside further lines names only leave less
             one = select(problem, shapes, rng, most=1, margin=NOISE_SHARE, before=s.looked_at)
             if _takes_more(one, s):
-                named += shapes
+                named += [*one.candidates, *shapes]  # refined: on its grid a bend may look better
                 s = _select(problem, named, found, rng)
         extra = [c.columns for c in s.candidates]
         if not any(c.name in searched for c in s.candidates) and k > 0:
@@ -105,12 +105,15 @@ def _select(
 
 
 def _takes_more(one: Selection, other: Selection) -> bool:
-    """Whether a shape alone takes clearly more off the held-out error than all names. It would replace them
-    where they leave more than the floor, or where it shows below a floor that coarse steps make."""
+    """Whether a shape alone takes clearly more off the held-out error than all names, or more with fewer
+    coefficients. It would replace them where they leave more than the floor, or where it shows below a floor
+    that coarse steps make."""
     more = AS_MUCH * one.held.taken > other.held.taken
     fraction = other.held.after > STILL_MISSING * one.held.after
+    few, many = (sum(c.cost for c in s.candidates) for s in (one, other))
+    fewer = few < many and one.held.after < other.held.after
     shows = other.held.after > other.problem.floor or rules.clear(one)
-    return bool(one.chosen) and (more or fraction) and shows
+    return bool(one.chosen) and (more or fraction or fewer) and shows
 
 
 def _known(c: Candidate, found: list[Candidate], scene: Scene) -> bool:

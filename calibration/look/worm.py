@@ -19,6 +19,7 @@ from calibration.decide.selection import Refusal, Selection
 from calibration.decide.thresholds import LUCK_Z
 from calibration.finding import UNKNOWN, Finding
 from calibration.names.name import candidate
+from calibration.statistics.regression import solve
 
 ASSUMED = "the log names no mount that is known here: the wheel is the usual one that fits"
 LEAST_IN_SECTION = 1.2  # fitted turns of a section for its own phase to mean anything. ASSUMPTION
@@ -32,6 +33,8 @@ NEXT = 0.9  # of the slowest period looked for: a found one below it lets more b
 LEAST_TURNS = 2.0  # worm turns in a section below which a worm cannot be separated from drift. ASSUMPTION
 IN_ALL = 3.0  # worm turns likewise, of all sections whose own phase shows: drifts differ. ASSUMPTION
 HARMONICS = 8  # harmonics of a worm that are looked at. ASSUMPTION
+KEPT = 0.002  # part of its rate, that a mount keeps at least: 0.03 arcsec/s. ASSUMPTION
+NEAR = np.linspace(-0.5, 0.5, 21)  # turns in the longest section, by which a rate may be another. arithmetic
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -197,12 +200,32 @@ def _harmonic_leads(s: Selection, k: int) -> bool:
     return bool(sizes.argmax() > 0)
 
 
+def _elsewhere(s: Selection, k: int) -> list[Candidate]:
+    """A period next to a free one that fits better; next to a part's, that predicts clearly better."""
+    p, c, beside = s.problem, s.candidates[k], s.without(k).columns
+    rate = c.frequency or 0.0
+
+    def turning(at: float) -> Array:
+        return np.hstack([beside, harmonics(p, at, (1,))])
+
+    def left(at: float) -> float:
+        x, y = turning(at)[p.train], p.y[p.train]
+        return float(np.sum((y - x @ solve(x, y)) ** 2))
+
+    best = min((rate + x / longest_span(p) for x in NEAR), key=left)
+    if abs(best / rate - 1) <= (KEPT if c.stage else 0.0):
+        return []
+    better = not c.stage or cross_validate(p, turning(rate), turning(best), s.after.whitener).sure
+    return _periodic(p, UNKNOWN, best, (1,), domain="time") if better else []
+
+
 def settle(problem: Problem, candidates: list[Candidate], named: bool) -> Selection:
-    """Select; what takes too little off the held-out frames is left out and the selection made again."""
+    """Select; what takes too little off the held-out frames is left out and the selection made again. So is
+    a part whose turn is another period's."""
     refused, tried = list[Refusal](), len(candidates)
     while True:
         s = select(problem, candidates, most=2, before=tried - len(candidates))
-        idle = set()
+        idle, moved = set(), list[Candidate]()
         for k, x in enumerate(s.chosen):
             own = named and x.candidate.stage
             part, free = (PART_GAIN, "a part of this mount"), (FREE_GAIN, "a period that was tried")
@@ -214,10 +237,12 @@ def settle(problem: Problem, candidates: list[Candidate], named: bool) -> Select
                 why = f"{took}, within luck (z = {held.z:.1f})"
             if not why and x.candidate.stage and not named and _harmonic_leads(s, k):
                 why = "a harmonic is larger than the turn itself, on a wheel that is only assumed"
+            if not why and (other := _elsewhere(s, k)):
+                why, moved = f"a period of {1 / (other[0].frequency or 1.0):.1f} s fits better", other
             if why:
                 refused.append(Refusal(x.candidate.say(), why))
                 idle.add(x.candidate.key)
         if not idle:
             s.refused = refused + s.refused
             return s
-        candidates = [c for c in candidates if c.key not in idle]
+        candidates = [c for c in candidates if c.key not in idle and (c.stage or not moved)] + moved

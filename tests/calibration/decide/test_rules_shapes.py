@@ -122,8 +122,8 @@ def test_an_effect_larger_than_the_response_that_leaves_more_than_there_was_goes
     s = of(two, *near)
     assert larger_than_the_response(s, 0) and larger_than_the_response(s, 1)
     assert within_bounds(0.1)(s)[1].startswith("larger than the response's own range")  # type: ignore[index]
-    for name in (UNKNOWN, "play"):
-        assert not larger_than_the_response(of(two, replace(near[0], name=name), near[1]), 0)
+    assert larger_than_the_response(of(two, replace(near[0], name=UNKNOWN), near[1]), 0)
+    assert not larger_than_the_response(of(two, replace(near[0], name="play"), near[1]), 0)  # a loop
     # as large as all there is, and leaves less: a true effect
     assert not larger_than_the_response(of(3 * A, near[0]), 0)
     assert not larger_than_the_response(of(A, one("brake_drag", A), one("play", B)), 1)
