@@ -45,8 +45,10 @@ MOUNTS = (
 #: 47:9, the EQ6 47:12 (owners' manuals of the belt conversions that replace them); with wheels of 135 and 180
 #: teeth both drive gears turn once in 122.2 s.
 TRANSFERS = ((r"EQ6|HEQ5|Sirius|Atlas", ((180, 47, 12), (135, 47, 9))),)
-# teeth of wheels of mounts in use (makers' datasheets), tried when no mount is named: count
-COMMON = (130, 135, 144, 180, 192, 216, 225, 288, 359, 360, 435)
+# teeth of further wheels of mounts in use (makers' datasheets): count
+FURTHER = (130, 192, 288, 359)
+#: tried when no mount is named
+COMMON = tuple(sorted({*FURTHER, *(n for _, teeth in MOUNTS for n in teeth)}))
 
 
 def _name(runs: list[Run]) -> str:

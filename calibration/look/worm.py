@@ -23,12 +23,12 @@ from calibration.statistics.regression import solve
 
 ASSUMED = "the log names no mount that is known here: the wheel is the usual one that fits"
 LEAST_IN_SECTION = 1.2  # fitted turns of a section for its own phase to mean anything. ASSUMPTION
-# of the held-out mean square, that a part of the mount in the log must take away, and one of eleven usual
+# of the held-out mean square, that a part of the mount in the log must take away, and one of the usual
 # wheels or any free period: on 30 worm-free logs with slow quasi-periodic wander (seeds 0 to 29 of
 # tests/calibration/guidelogs.py) three of these took 9 to 27 % of the ends that were held out then, the worms
 # of the measured logs 81 to 98 %
 PART_GAIN = 0.15
-FREE_GAIN = 0.35  # share likewise, of one of eleven usual wheels or any free period, on the same seeds
+FREE_GAIN = 0.35  # share likewise, of one of the usual wheels or any free period, on the same seeds
 NEXT = 0.9  # of the slowest period looked for: a found one below it lets more be drift. ASSUMPTION
 LEAST_TURNS = 2.0  # worm turns in a section below which a worm cannot be separated from drift. ASSUMPTION
 IN_ALL = 3.0  # worm turns likewise, of all sections whose own phase shows: drifts differ. ASSUMPTION
@@ -173,6 +173,7 @@ def findings(s: Selection, mount: Mount, span: float) -> list[Finding]:
         remarks = ["within this log's resolution also " + ", ".join(others[:3])] if others else []
         if f.stage and not mount.named:
             remarks.insert(0, ASSUMED)
+            f = replace(f, equivalent=[UNKNOWN] if others else [])  # any period is next to some usual wheel
         out.append(replace(f, note="; ".join(remarks)))
     return out
 
