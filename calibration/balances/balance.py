@@ -27,6 +27,7 @@ COVER = 0.02  # of its own quantile range that a held-out file may exceed the ot
 # of the others' range that the end of a file may go beyond them before another part is held out. ASSUMPTION:
 # half; loads that grow step by step are first seen at the end
 BEYOND = 0.5
+CHANGES = 0.01  # of its size, by which a column changes at least: else it has one value. ASSUMPTION
 # first letters of terms that a part of a file may go beyond, as the speed may
 TOLD_BY = ("gravity", "applied")
 
@@ -207,7 +208,8 @@ def _excess(columns: Sequence[Array], mine: Mask, others: Mask) -> float:
     for z in columns:
         low, high = np.quantile(z[others], [0.01, 0.99])
         a, b = np.quantile(z[mine], [0.02, 0.98])
-        total += (max(low - a, 0.0) + max(b - high, 0.0)) / max(high - low, 1e-300)
+        span = max(high - low, CHANGES * float(np.median(np.abs(z))), 1e-300)
+        total += (max(low - a, 0.0) + max(b - high, 0.0)) / span
     return float(total)
 
 

@@ -103,7 +103,8 @@ class Problem:
         others, mine = self.base[self.train], self.base[self.test]
         own = np.zeros(self.base.shape[1], dtype=bool)
         if self.fresh is not None:  # what is fitted there anew need not be told
-            own, fresh = ~others.any(axis=0), self.fresh[self.test]
+            own[:] = ~others.any(axis=0)
+            fresh = self.fresh[self.test]
             mine = mine - fresh @ np.linalg.lstsq(fresh, mine, rcond=None)[0]
         rows = np.zeros(len(self.y), dtype=bool)
         rows[self.test] = told(others[:, ~own], mine[:, ~own])
