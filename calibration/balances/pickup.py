@@ -7,6 +7,7 @@ from scipy.ndimage import maximum_filter1d
 from calibration.arrays import Array, by_median
 from calibration.balances.filters import pieces, smooth
 from calibration.balances.view import View
+from calibration.inputs.run import last_digit
 from calibration.statistics.orders import around, power_of_two
 
 QUICK = 0.19  # cycles per standard deviation of the filter, which passes half of such a line: arithmetic
@@ -55,7 +56,8 @@ def pick_up(view: View) -> tuple[float, float] | None:
     line = float(max(near, key=lambda f: _sizes(quick, spans, f, everything)))
     whole = _sizes(quick, spans, line, calm)
     noise = by_median(quick[view.ok])
-    if whole <= 0.5 * view.quanta.get(view.response.channel, 0.0) * abs(view.response.gain):
+    step = max(view.quanta.get(view.response.channel, 0.0), last_digit(full[view.ok]))
+    if whole <= 0.5 * step * abs(view.response.gain):
         return None  # rounding leaves as much
     if whole / np.sqrt(2.0) < MATTERS * noise or not _at_every_speed(view, quick, spans, line, whole):
         return None

@@ -133,16 +133,16 @@ def quantum(x: Array) -> float | None:
         return None
     # a wide, sparse column has few steps of one count
     least = float(np.quantile(steps, limits.SMALL_STEPS)), float(steps.min())
-    return _as_multiples(steps, least[0]) or _as_multiples(steps, least[1]) or _last_digit(values)
+    return _as_multiples(steps, least[0]) or _as_multiples(steps, least[1])
 
 
-def _last_digit(values: Array) -> float | None:
-    """The power of ten of which all values are multiples, where that is no finer than any sensor."""
-    finest = limits.FINEST * float(np.ptp(values))
-    for digit in 10.0 ** np.arange(np.floor(np.log10(np.ptp(values))), np.log10(finest), -1.0):
+def last_digit(values: Array) -> float:
+    """The power of ten of which all values are multiples; 0 where that is finer than any sensor."""
+    whole = float(np.ptp(values)) or 1.0
+    for digit in 10.0 ** np.arange(np.floor(np.log10(whole)), np.log10(limits.FINEST * whole), -1.0):
         if np.all(np.abs(values / digit - np.round(values / digit)) < limits.WHOLE):
             return float(digit)
-    return None
+    return 0.0
 
 
 def _as_multiples(steps: Array, least: float) -> float | None:
