@@ -77,7 +77,7 @@ def _search(view: View, problem: Problem) -> tuple[Selection, Scene]:
         found += fresh
         s = _select(problem, named, found, rng)
         if shapes and k == 0:  # beside further lines names only leave less
-            one = select(problem, shapes, rng, most=1, margin=NOISE_SHARE, before=s.looked_at)
+            one = _best_alone(problem, shapes, rng, s.looked_at)
             if _takes_more(one, s):
                 named += [*one.candidates, *shapes]  # refined: on its grid a bend may look better
                 s = _select(problem, named, found, rng)
@@ -102,6 +102,15 @@ def _select(
         if any(c.frequency for c in s.candidates):
             return s
     return select(problem, [*named, *found], rng, most=MOST, margin=NOISE_SHARE)
+
+
+def _best_alone(
+    problem: Problem, shapes: list[Candidate], rng: np.random.Generator, before: int
+) -> Selection:
+    """The shape that leaves least, of the best of each domain: unrefined, a stop may look worse."""
+    by_domain = [[c for c in shapes if c.domain == domain] for domain in sorted({c.domain for c in shapes})]
+    each = [select(problem, x, rng, most=1, margin=NOISE_SHARE, before=before) for x in by_domain]
+    return min(each, key=lambda s: s.held.after if s.chosen else np.inf)
 
 
 def _takes_more(one: Selection, other: Selection) -> bool:

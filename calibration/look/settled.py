@@ -14,6 +14,8 @@ from calibration.decide.heldout import cross_validate
 from calibration.decide.thresholds import STILL_MISSING
 from calibration.inputs.run import Run, numbers
 from calibration.look.delay import Make, Timed, left_by_the_declared
+from calibration.names.unknown import KNOTS
+from calibration.names.unknown_shapes import spline_columns
 from calibration.statistics.regression import solve
 from calibration.statistics.tails import rms
 
@@ -117,7 +119,9 @@ def turned(view: View, problem: Problem) -> list[str]:
     r, rows, x = view.response, problem.train, problem.base
     if not r.is_force or r.channel == "acceleration":
         return []
-    if view.turn:  # a weight that nobody declared must not turn the sign
+    # neither a weight that nobody declared must turn the sign, nor a spring or a stop
+    x = np.column_stack([x, spline_columns(view.x[view.rows], KNOTS)])
+    if view.turn:
         x = np.column_stack([x, waves(view.x[view.rows] / view.turn * 2 * np.pi, (1,))])
     beta = np.linalg.lstsq(x[rows], problem.y[rows], rcond=1e-8)[0]
     heavy = [k for k, (n, _) in enumerate(problem.base_labels) if n in ("inertia", "viscous", "coulomb")]

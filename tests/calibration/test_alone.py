@@ -76,6 +76,16 @@ def test_an_end_stop_is_one_function_of_the_place(tmp_path: Path) -> None:
     assert data["error"]["torque"]["after"] < 1.2 * data["error"]["torque"]["floor"]
 
 
+def test_an_end_stop_is_no_function_of_the_load_that_it_makes(tmp_path: Path) -> None:
+    """It pushes 25 times as hard as mass and friction together, which must not turn the sign of the force."""
+    t, x, u = motion(LONG)
+    stop = 2000.0 * np.maximum(x - 0.12, 0.0) ** 2
+    data = answer(tmp_path, FORCE, (t, x, u + stop))
+    assert data["effects"][0]["domain"] == "axis_angle"
+    assert data["effects"][0]["parameters"]["begin"]["value"] == pytest.approx(0.12, abs=0.001)
+    assert data["error"]["torque"]["after"] < 0.02 * data["error"]["torque"]["before"]
+
+
 def test_iron_that_saturates_is_a_function_of_the_current(tmp_path: Path) -> None:
     """The force that the motion needs is what is left of the effort, less a tenth of its square at 8 N."""
     t, x, force = motion(LONG)
@@ -111,11 +121,14 @@ def test_friction_grows_with_what_two_joints_weigh(tmp_path: Path) -> None:
     assert first["parameters"]["coefficient"]["value"] == pytest.approx(0.08, rel=0.1)
 
 
-def test_a_dent_is_one_place_and_no_harmonics(tmp_path: Path) -> None:
-    """Of a tape: 8 µrad high, 20 mm wide, where the stage of three turns has its own harmonics declared."""
+@pytest.mark.parametrize(("period", "harmonics", "width"), [(0.25, 3, 0.02), (0.8, 6, 0.06)])
+def test_a_dent_is_one_place_and_no_harmonics(
+    tmp_path: Path, period: float, harmonics: int, width: float
+) -> None:
+    """Of a tape: 8 µrad high, where a stage of three turns or of one has harmonics that could make it."""
     t, x, y = sensors()
-    dent = 8e-6 * np.exp(-0.5 * ((x + 0.07) / 0.02) ** 2)
-    rig = SENSORS + "stages:\n  - {name: disc, period: 0.25, harmonics: 3}\n"
+    dent = 8e-6 * np.exp(-0.5 * ((x + 0.07) / width) ** 2)
+    rig = SENSORS + f"stages:\n  - {{name: disc, period: {period}, harmonics: {harmonics}}}\n"
     data = answer_of(tmp_path, rig, (t, np.round(x, 5), y + dent))
     assert domains(data) == {("unknown", "axis_angle")}
     (only,) = data["effects"]

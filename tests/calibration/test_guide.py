@@ -21,7 +21,7 @@ from tests.calibration.guidelogs import TOP, section
 from tests.calibration.test_readers import GUIDE
 
 
-def night(teeth: int, phases: list[float], amplitude: float = 3.0, seed: int = 5, **more: Any) -> str:
+def night(teeth: float, phases: list[float], amplitude: float = 3.0, seed: int = 5, **more: Any) -> str:
     """Sections of 80 minutes with a worm at its own phase in each, drift and star noise."""
     rng = np.random.default_rng(seed)
     text = TOP
@@ -51,6 +51,23 @@ def test_a_worm_with_a_phase_of_its_own_in_every_section_is_found_and_pays_on_he
     assert amplitude["low"] < 3.0 < amplitude["high"]
     assert data["error"]["position"]["after"] < 0.6 * data["error"]["position"]["before"]
     assert data["held_out"] == ["pieces of 480 s, in turn"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("wheel", "phases", "found"),
+    [
+        (288.0, [0.4], [("gear_eccentricity", "worm of a 288-tooth wheel")]),
+        (291.5, [0.4], [("unknown", None)]),  # a quarter turn off in 80 minutes, of sines of 3 in 0.3 arcsec
+        (248.0, [0.4, 2.0], [("gear_eccentricity", "worm of a 248-tooth wheel")]),
+    ],
+)
+def test_a_usual_wheel_is_assumed_where_the_period_is_its_own(
+    tmp_path: Path, wheel: float, phases: list[float], found: list[tuple[str, str | None]]
+) -> None:
+    data = report(tmp_path, night(wheel, phases, mount="On-camera"))
+    assert [(e["name"], e["stage"]) for e in data["effects"]] == found
+    assert data["effects"][0]["frequency_Hz"] == pytest.approx(wheel / SIDEREAL_DAY_S, rel=0.004)
 
 
 @pytest.mark.slow
