@@ -36,9 +36,15 @@ MOST = 12  # of one log. More are no events but a way of moving. ASSUMPTION
 def with_jumps(s: Selection, when: Callable[[int], str]) -> tuple[Selection, list[Finding]]:
     """The selection with its jumps as one more effect, where it has some, and the finding that it is.
 
-    Held-out rows lie between fitted ones: a jump is not seen again. when: the time of a row, told.
+    Held-out rows lie between fitted ones: a jump is not seen again. One that is not clear beside the others
+    is left out. when: the time of a row, told.
     """
-    p, places = s.problem, jumps_of(s, CLEAR)
+    return _beside(s, jumps_of(s, CLEAR), when)
+
+
+def _beside(s: Selection, places: list[int], when: Callable[[int], str]) -> tuple[Selection, list[Finding]]:
+    """`with_jumps` with jumps at some places, rows, of which those stay that are clear beside each other."""
+    p, k = s.problem, len(s.chosen)
     if not places:
         return s, []
     steps, sizes = np.column_stack(_steps_at(p, places)), [("size", p.unit)] * len(places)
@@ -46,11 +52,13 @@ def with_jumps(s: Selection, when: Callable[[int], str]) -> tuple[Selection, lis
     if one is None:
         return s, []
     again = s.keep([*s.chosen, one])
+    clear = np.abs(again.sizes(k)) > CLEAR * np.sqrt(np.diag(again.covariance(k)))
+    if not clear.all():
+        return _beside(s, [at for at, stays in zip(places, clear, strict=True) if stays], when)
     last = s.held.after if s.chosen else again.held.before
     share = 1 - (again.held.after / last) ** 2
     if not share > LEAST_SHARE:
         return s, []
-    k = len(s.chosen)
     again = s.keep([*s.chosen, replace(one, held=replace(again.held, share=share))])
     told = (f"{size:.3g} {p.unit} at {when(at)}" for size, at in zip(again.sizes(k), places, strict=True))
     return again, [replace(finding_of(again, k), parameters={}, note=f"jumps: {', '.join(told)}")]

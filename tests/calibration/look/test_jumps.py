@@ -46,6 +46,18 @@ def test_jumps_are_told_with_time_and_size_and_pay_on_held_out_frames(tmp_path: 
     assert any(each["stage"] for each in data["effects"]) == (worm > 0)
 
 
+def test_a_jump_is_not_hidden_by_what_looks_like_some(tmp_path: Path) -> None:
+    """One of 3″ in half an hour; a gust of 1.6″ for a minute and a half, there and back, is none."""
+    t = np.arange(0, 1800, 4.0)
+    e = np.random.default_rng(1).normal(0, 0.5, len(t)) + 3.0 * (t > 400) + 1.6 * (abs(t - 1300) < 45)
+    log = tmp_path / "log.txt"
+    log.write_text(TOP + section("2026-01-01 20:00:00", t, e))
+    assert calibrate([log], None, [], tmp_path / "out", plots=False) == 0
+    (found,) = json.loads((tmp_path / "out" / "report.json").read_text())["effects"]
+    ((size, when),) = re.findall(r"(\S+) arcsec at (\d+) s", found["note"])
+    assert (float(size), float(when)) == (pytest.approx(3.0, abs=0.5), pytest.approx(400, abs=10))
+
+
 @pytest.mark.slow
 def test_a_log_without_jumps_has_none(tmp_path: Path) -> None:
     for seed in range(20):
