@@ -27,9 +27,10 @@ from calibration.look.delay import Found, Make, Timed, timed
 from calibration.look.event import leave_out_event
 from calibration.look.gap import crossed_first, where_known
 from calibration.look.looked import Balance, Options, Spectrum, calibrated
+from calibration.look.loopslaw import follows, law_of_its_loop
 from calibration.look.said import close, filtered, lacking_names, moves_with, place_of, wound_up
 from calibration.look.search import find, scene_of
-from calibration.look.settled import few_values, law_of_its_loop, one_filter, sharpest, turned
+from calibration.look.settled import few_values, one_filter, sharpest, turned
 from calibration.look.slips import slipped
 
 SWAYS = 6  # waves that a zero may make within a file: along more moves it follows none. ASSUMPTION
@@ -61,8 +62,10 @@ def look_at_forces(view: View, records: list[Run], options: Options) -> Balance:
         if view.dynamic:
             fade(view, sharpest(view, made))
         when, remarks = _found(view, made)
-    told = _told(view, when, notes, remarks)
-    return replace(told, findings=[*told.findings, event]) if event else told
+    told = _told(view, when, notes)
+    law = follows(view, made(), told.selection.held.after) if told.missing else []
+    findings = [*told.findings, event] if event else told.findings
+    return replace(told, findings=findings, remarks=[*remarks, *law])
 
 
 def _found(view: View, made: Make) -> tuple[Timed, list[str]]:
@@ -156,7 +159,7 @@ def _sharper(first: Timed, view: View, made: Make, attempt: Callable[[], Timed])
     return first
 
 
-def _told(view: View, when: Timed, notes: list[str], remarks: list[str]) -> Balance:
+def _told(view: View, when: Timed, notes: list[str]) -> Balance:
     """The parts of the answer: floor, names that stay, what no name explains, controls."""
     channel, unit = view.response.channel, view.angle_unit
     s, scene, bounds = when.found
@@ -194,7 +197,6 @@ def _told(view: View, when: Timed, notes: list[str], remarks: list[str]) -> Bala
         not_identifiable=[*moves_with(s, bounds), *bounds],
         needs=[*filter(None, [when.close]), *needs],
         notes=[*notes, *lacking_names(scene, scene.channel)],
-        remarks=remarks,
         over=partial(place_of, view),
         spectrum=Spectrum(
             turns=view.x[view.rows],  # orders per position unit

@@ -11,18 +11,11 @@ from calibration.balances.filters import Filter
 from calibration.balances.problem import Problem
 from calibration.balances.view import NYQUIST, STANDSTILLS, View, choose_rows, fade
 from calibration.decide.heldout import cross_validate
-from calibration.decide.thresholds import STILL_MISSING
 from calibration.inputs.run import Run, numbers
 from calibration.look.delay import Make, Timed, left_by_the_declared
 from calibration.names.unknown import KNOTS
 from calibration.names.unknown_shapes import spline_columns
-from calibration.statistics.regression import solve
-from calibration.statistics.tails import rms
 
-#: responses that a loop commands
-COMMANDED = ("effort", "current", "voltage")
-# of its variation, that such a law leaves at most. ASSUMPTION: friction's corners leave more
-EXACT = 0.01
 # amplitude behind a filter, below which a wave is not seen there. ASSUMPTION: as little as half is still seen
 HARDLY = 0.5
 
@@ -88,27 +81,6 @@ def few_values(records: list[Run], view: View, p: Problem) -> str:
         f"{channel} holds {values} values, the model has {terms} terms: no balance"
         " can be tested with it; as response take a measured current or force"
     )
-
-
-def law_of_its_loop(view: View, p: Problem, floor: float | None) -> str:
-    """Why an effort that is its loop's law, and so says nothing of forces, cannot be tested; or empty.
-
-    A loop at rest at one set point pulls back, in proportion to the place; a drive's own forces do not.
-    """
-    if not view.dynamic or view.response.channel not in COMMANDED or not floor:
-        return ""
-    rows, unit = p.valid, view.unit
-    x = np.column_stack([np.ones(len(p.y)), view.x[view.rows], view.at(view.smoothed(view.rate(view.x)))])[
-        rows
-    ]
-    constant, slope, rate = solve(x, p.y[rows])
-    least = min(STILL_MISSING * floor, EXACT * float(np.std(p.y[rows])))
-    forces = rms(p.plain_fit(rows)[1][rows])  # a mass along one sine pulls back in proportion, too
-    if slope >= 0 or forces <= least or not rms(p.y[rows] - x @ [constant, slope, rate]) <= least:
-        return ""
-    told = f"{constant:.4g} {unit} - {-slope:.4g} {unit}/{view.angle_unit} x position"
-    why = "That is the law of a loop with one set point, beside which no force shows: move the set point"
-    return f"{view.response.channel} is {told}. {why}"
 
 
 def turned(view: View, problem: Problem) -> list[str]:

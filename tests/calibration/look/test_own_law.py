@@ -9,7 +9,8 @@ import pytest
 from calibration.command import calibrate
 from calibration.report.pictures import TRACE
 from calibration.report.plots import GATE
-from tests.calibration.test_drives import FORCE, MASS, PERIOD, VISCOUS, answer
+from tests.calibration.test_drives import FORCE, MASS, PERIOD, VISCOUS, answer, motion
+from tests.calibration.test_strangers import rate
 
 GAIN, SET_POINT = 40.0, 0.5
 
@@ -54,3 +55,19 @@ def test_a_page_has_no_empty_picture_or_table_where_nothing_was_looked_for(tmp_p
     page = (tmp_path / "seen" / "report.html").read_text()
     assert TRACE.split(",")[0] in page
     assert not any(x in page for x in (GATE, "Declared model, re-calibrated", "Gate and negative controls"))
+
+
+REFERENCE = FORCE.replace("response:", "  reference: {column: r, unit: m}\nresponse:")
+
+
+@pytest.mark.parametrize("forces", [True, False])
+def test_a_loop_with_a_moving_reference_is_told_where_forces_say_less(tmp_path: Path, forces: bool) -> None:
+    """u = 80 (r - x) - 5 v holds exactly; what x answers is the drive of the rig, or somebody's hands."""
+    t, x, u = motion()
+    u = u if forces else 6.0 * np.sin(2.3 * t) + 4.0 * np.sin(3.9 * t + 1.0)
+    r = x + (u + 5.0 * rate(x)) / 80.0
+    data = answer(tmp_path, REFERENCE, (t, x, u, r), header="t,x,u,r")
+    told = re.search(r"(\S+) N/m x \(reference - position\) - (\S+) N s/m x velocity leaves", str(data))
+    assert (told is None) == forces
+    if told:
+        assert [float(x) for x in told.groups()] == [pytest.approx(80, rel=0.05), pytest.approx(5, rel=0.2)]
