@@ -159,10 +159,12 @@ def cancelled(s: Selection) -> tuple[int, str] | None:
 
 
 def larger_than_the_response(s: Selection, k: int) -> bool:
-    """Whether an effect, a harmonic of a line, or a whole smooth function goes further than the response
-    does, and leaves more than there was: it cancels against another. A loop takes friction's place, which it
-    cancels. Two masses pull against each other at the resonance: there the second one is a part of the
-    inertia, or is none."""
+    """Whether an effect, a harmonic of a line, or a smooth function goes further than the response does.
+
+    Where it also leaves more than there was, it cancels against another. A loop takes friction's place, which
+    it cancels. Two masses pull against each other at the resonance: there the second one is a part of the
+    inertia, or is none.
+    """
     c, rows, y = s.candidates[k], s.problem.valid, s.problem.y[s.problem.valid]
     if c.name != UNKNOWN and NAMES[c.name].loop:
         return False
