@@ -48,9 +48,10 @@ def follows(view: View, p: Problem, left: float) -> list[str]:
     x = np.column_stack([np.ones(len(p.y)), error, view.at(view.smoothed(view.rate(view.x)))])
     beta = solve(x[p.train], p.y[p.train])
     law = rms(p.y[p.test] - x[p.test] @ beta)
-    if beta[1] <= 0 or not law < TOLD * left:
+    _, gain, damping = beta
+    if gain <= 0 or not law < TOLD * left:
         return []
-    gain, damping = (f"{abs(b):.3g} {unit}" for b in beta[1:])
-    told = f"{gain}/{view.angle_unit} x (reference - position) {'+' if beta[2] > 0 else '-'} {damping}"
-    told += f" s/{view.angle_unit} x velocity leaves {law:.3g} {unit} where the forces leave {left:.3g}"
+    told = f"{gain:.3g} {unit}/{view.angle_unit} x (reference - position) {'+' if damping > 0 else '-'}"
+    told += f" {abs(damping):.3g} {unit} s/{view.angle_unit} x velocity"
+    told += f" leaves {law:.3g} {unit} where the forces leave {left:.3g}"
     return [f"{channel} is what its loop commands: {told}. Declare the law as `controller`"]
