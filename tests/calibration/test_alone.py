@@ -197,3 +197,15 @@ def test_a_function_of_a_load_is_drawn_over_the_load(tmp_path: Path) -> None:
     values, label = place_of(view, over("current", np.zeros((len(view.rows), 1)), ("square", "rad")))
     assert label == "effort, N m"
     assert values == pytest.approx(np.sin(3.0 * view.x[view.rows]), abs=0.05)
+
+
+def test_a_curve_over_the_place_stays_where_one_file_goes_on_alone(tmp_path: Path) -> None:
+    """Of four files one goes 150 mm further, where the cable slackens: no other tells that."""
+    t, x, u = motion(15.0)
+    tables = []
+    for k in range(4):
+        place = x + 0.02 * k + 0.15 * (k == 2)
+        tables.append((t, place, u + 12.0 * np.tanh(place / 0.1) - 72.0 * np.maximum(place - 0.42, 0.0)))
+    data = answer_of(tmp_path, FORCE, *tables)
+    assert data["effects"][0]["domain"] == "axis_angle"
+    assert data["error"]["torque"]["after"] < 0.3 * data["error"]["torque"]["before"]
