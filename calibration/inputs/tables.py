@@ -19,6 +19,7 @@ from calibration.inputs.run import Run, signal_of
 from calibration.inputs.text import Long, heading, load_utf8, read_long
 from calibration.inputs.thresholds import LARGEST_NUMBER
 
+FROM_THE_FIRST = 3.0  # steps of a clock from its first stamp, where it starts again. ASSUMPTION
 #: files that are no text, by the ending of their name
 READERS = {".mat": read_matlab, ".npz": read_matlab, **RECORDINGS}
 
@@ -46,8 +47,19 @@ def read_table(path: Path, rig: Rig, text: str | None = None) -> list[Run]:
             found = [one]
         else:
             found = [table.read(wanted, stamps)]
+    if stamp is not None:
+        found = [part for raw in found for part in runs_of_clock(raw, raw[str(stamp.column)])]
     names = [f"{path.stem}{{{k}}}" for k in range(1, len(found) + 1)] if len(found) > 1 else [path.stem]
     return [_run(path, rig, raw, name, logged) for raw, name in zip(found, names, strict=True)]
+
+
+def runs_of_clock(raw: dict[str, Array], t: Array) -> list[dict[str, Array]]:
+    """A table, in parts where its clock `t` (n,) starts again from its first stamp; else it stays one."""
+    back = np.flatnonzero(np.diff(t) < 0) + 1
+    if not len(back) or np.any(t[back] - t[0] > FROM_THE_FIRST * np.median(np.abs(np.diff(t)))):
+        return [raw]
+    edges = itertools.pairwise([0, *back, len(t)])
+    return [{name: x[a:b] for name, x in raw.items()} for a, b in edges]
 
 
 def _run(path: Path, rig: Rig, raw: dict[str, Array], name: str, logged: dict[str, Array]) -> Run:

@@ -88,11 +88,12 @@ def look_at_response(drive: Drive, rig: Rig, options: Options) -> Looked:
 
 
 def _check(records: list[Run], rig: Rig) -> None:
-    """CalibrationInputError for records that are too short to say anything."""
+    """CalibrationInputError for records that are too short to say anything, all together."""
+    rows = sum(r.rows for r in records)
+    if rows < FEWEST_ROWS:
+        few = f"{rows} rows are too few to say anything (at least {FEWEST_ROWS})"
+        raise CalibrationInputError(records[0].path, few)
     for r in records:
-        if r.rows < FEWEST_ROWS:
-            few = f"{r.rows} rows are too few to say anything (at least {FEWEST_ROWS})"
-            raise CalibrationInputError(r.path, few)
         for key, value in (("smooth_s", rig.smooth_s), ("analyse_period_s", rig.analyse_period_s)):
             if value is not None and value > 0.02 * r.duration_s:
                 long = f"{key}: {value:g} s is too long for a run of {r.duration_s:.4g} s"

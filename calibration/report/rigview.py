@@ -65,7 +65,7 @@ def _declaration(rig: Rig) -> str:
 def _power(records: list[Run], rig: Rig, response: Response) -> Iterator[str]:
     """What a log of these rows could show of a response: its filter, and how often it passes each stage. Also
     the smallest line that would have a name beside a rest as large as the response is now."""
-    if rig.motors is not None or rig.drifts or not all(r.rows >= FEWEST_ROWS for r in records):
+    if rig.motors is not None or rig.drifts or sum(r.rows for r in records) < FEWEST_ROWS:
         return
     view = view_of(records, rig, response)
     p = problem_of(view, records, [])

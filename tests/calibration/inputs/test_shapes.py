@@ -57,6 +57,18 @@ def test_stamps_in_words_are_seconds(tmp_path: Path, form: str, stamp: object) -
     assert run.columns["position"].tolist() == X.tolist()
 
 
+def test_a_clock_that_starts_again_begins_a_run(tmp_path: Path) -> None:
+    """Three of 100 rows; a clock that falls back to its middle is no run's first stamp."""
+    t = np.tile(T[:100], 3)
+    (tmp_path / "rig.yaml").write_text(f"rig: r\ncolumns:\n{COLUMNS}{TAIL}")
+    (tmp_path / "a.csv").write_text(rows(t, X, U))
+    runs = read_drive([tmp_path / "a.csv"], load_rig(tmp_path / "rig.yaml")).records
+    assert [(r.name, r.rows) for r in runs] == [(f"a{{{k}}}", 100) for k in (1, 2, 3)]
+    assert runs[2].columns["position"].tolist() == X[200:].tolist()
+    with pytest.raises(CalibrationInputError, match=r"time goes backwards from 0\.99 to 0\.5"):
+        read(tmp_path, rows(np.where(np.arange(ROWS) < 100, t, t + 0.5), X, U))
+
+
 def test_a_word_that_is_no_stamp_names_its_line(tmp_path: Path) -> None:
     columns = COLUMNS.replace("unit: s}", "unit: s, format: iso}")
     with pytest.raises(CalibrationInputError, match=r"a.csv:2: column 't': 'noon' is no stamp of format"):
