@@ -38,7 +38,7 @@ def problem_of(view: View, records: list[Run], hold_out: list[str], delay_s: flo
     y, ok = response_of(view, delay_s)
     terms = _terms(view)
     for name, value in rig.constants.items():
-        y = y - value * _term(view, name)[0][2]
+        y = y - value * term_of(view, name)[0][2]
     valid = (view.ok & ok)[at]
     if view.dynamic and response.channel != "acceleration":
         valid &= view.at((np.abs(view.speed) < view.slow).astype(float)) < STANDS
@@ -109,7 +109,7 @@ def default_terms(view: View) -> tuple[str, ...]:
 
 def _terms(view: View) -> list[Term]:
     """The declared model at full rate."""
-    return [term for name in default_terms(view) for term in _term(view, name)]
+    return [term for name in default_terms(view) for term in term_of(view, name)]
 
 
 def _own_offsets(view: View) -> bool:
@@ -118,7 +118,7 @@ def _own_offsets(view: View) -> bool:
     return not view.response.is_force or PER_FILE in default_terms(view)
 
 
-def _term(view: View, name: str) -> list[Term]:
+def term_of(view: View, name: str) -> list[Term]:
     """A term of the declared model at full rate."""
     unit, x = view.unit, view.angle_unit
     if name == "gravity":

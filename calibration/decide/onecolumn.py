@@ -16,11 +16,12 @@ def by_one_column(
     """The answer of `beyond_names` with one smooth function instead of several, of which one has no name.
 
     A load follows the place and the direction of the motion. What hangs on the load then looks like a sum of
-    functions of both, none of which explains it.
+    functions of both, none of which explains it. Where a name of that column is among them, it stays.
     """
+    named = {c.domain for c in together.candidates if c.name != UNKNOWN}
     if len(together.chosen) > 1 and any(c.name == UNKNOWN for c in together.candidates):
         model, scene.model = scene.model, None
-        columns = [c for c in smooth_functions(scene) if c.domain in OTHER_COLUMNS]
+        columns = [c for c in smooth_functions(scene) if c.domain in OTHER_COLUMNS and c.domain not in named]
         alone = select(s.problem, columns, most=1, before=s.looked_at)
         scene.model = model
         as_little = alone.held.after <= STILL_MISSING * max(together.held.after, s.problem.floor)

@@ -2,26 +2,45 @@
 
 import numpy as np
 
+from calibration.balances.balance import term_of
 from calibration.balances.slowoffset import SLOW
 from calibration.names.name import Candidate, Name, Scene, candidate
+from calibration.names.unknown_alone import SETTLED
+from calibration.statistics.regression import solve
 
-#: terms that are no load: friction, and what the amplifier's zero does
-NO_LOAD = ("coulomb", "viscous", "drift", SLOW)
+#: terms that are no load: what the amplifier's zero does
+ZERO = ("drift", SLOW)
+#: terms that the motor carries, and the load does not
+FRICTION = ("coulomb", "viscous")
 
 
 def columns(s: Scene) -> list[Candidate]:
-    """The load against the motion: from the motion, not from the response, whose noise it would share."""
+    """The load against the motion: what the motor makes, or what is left of that behind all friction.
+
+    Of the motion, not of the response, whose noise it would share.
+    """
     if s.pair is not None:  # through both trains, which pull against each other
         load = np.abs(s.pair.load) + 2 * np.abs(s.pair.lagging)
-    elif lacks(s) or not s.both:
-        return []
-    else:  # all that the declared terms make but friction: an offset and a weight share what they make
-        p, mass = s.problem, s.view.rig.constants.get("inertia", 0.0)
-        carried = [k for k, (n, _) in enumerate(p.base_labels) if n not in NO_LOAD]
-        sizes = np.array([s.declared[p.base_labels[k][0]] for k in carried])
-        load = np.abs(p.base[:, carried] @ sizes + mass * s.at(s.view.second(s.view.x)))
-    full = np.interp(np.arange(len(s.view.t)), s.view.rows, load)
-    return [candidate(NAME.name, s.answer(full), "coefficient", sign=1, most=1.0)]
+        return [_of(s, np.interp(np.arange(len(s.view.t)), s.view.rows, load))]
+    return [] if lacks(s) or not s.both else [_settled(s, ZERO, True), _settled(s, ZERO + FRICTION, False)]
+
+
+def _settled(s: Scene, without: tuple[str, ...], itself: bool) -> Candidate:
+    """Friction in proportion to the force that the terms make, but some; with itself or without."""
+    p, found = s.problem, np.zeros((len(s.problem.y), 1))
+    constants = [(n, x) for n, x in s.view.rig.constants.items() if n not in without]
+    known = sum((x * s.at(term_of(s.view, n)[0][2]) for n, x in constants), np.zeros(1))
+    carried = np.array([n not in without for n, _ in p.base_labels] + [itself])
+    for _ in range(SETTLED):
+        x = np.hstack([p.base, found])
+        force = x[:, carried] @ solve(x[p.train], p.y[p.train])[carried] + known
+        one = _of(s, np.interp(np.arange(len(s.view.t)), s.view.rows, np.abs(force)))
+        found = one.columns
+    return one
+
+
+def _of(s: Scene, load: np.ndarray) -> Candidate:
+    return candidate(NAME.name, s.answer(load), "coefficient", sign=1, most=1.0)
 
 
 def lacks(s: Scene) -> str:

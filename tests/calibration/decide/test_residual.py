@@ -56,8 +56,9 @@ def scene(force: bool = True, x: np.ndarray = X, sigma: float = PERIOD_S, **colu
     )
     at = np.asarray
     return SimpleNamespace(
-        view=view, force=force, both=False, span=0.0, temperature=None, model=None, unit="N m", at=at
-    )
+        view=view, force=force, both=False, span=0.0, temperature=None, model=None, unit="N m", at=at,
+        problem=SimpleNamespace(turned=None),
+    )  # fmt: skip
 
 
 def of(y: np.ndarray, files: int = 1, **more: Any) -> Selection:
