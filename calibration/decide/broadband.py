@@ -1,15 +1,13 @@
-"""Effects without a phase: broadband torque (wind), and lines of the full rate (pick-up)."""
+"""Effects without a phase: broadband torque (wind), and volts of one sector of a motor (a brush)."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from calibration.arrays import Array, Mask
-from calibration.balances.frame import Frame, fill
 from calibration.balances.problem import Problem
 from calibration.decide.thresholds import FEWEST_BLOCKS, FEWEST_VALIDATED
 from calibration.finding import UNKNOWN, Finding, Parameter, deviation
-from calibration.statistics.tails import middle as middle_of
 from calibration.statistics.tails import rms_interval, variance_log10
 from calibration.statistics.whitening import autocovariance, white_noise
 
@@ -37,18 +35,6 @@ VOLTS = 2.0  # times the quiet noise that the volts have, rms. ASSUMPTION
 SECTOR = 0.6
 BINS = 16  # bins of a motor's turn. ASSUMPTION: narrower than a brush
 FEWEST_IN_BIN = 20  # rows of a bin, fewest, for its mean. ASSUMPTION
-
-# --- a line on the currents
-
-# times the median power: noise of 60 000 rows reaches 16 by arithmetic, a motor's harmonics more. ASSUMPTION
-PEAK = 400.0
-COUNTS = 0.8  # counts of the converter, amplitude: a smaller line is a beat of quantised columns. ASSUMPTION
-FASTEST_BAND_HZ = 15.0  # Hz: slower, it is within the analysis band, or a motor's. ASSUMPTION
-# Hz within which the runs' lines are the same one. ASSUMPTION: the bins of a run of seven seconds
-SAME_HZ = 0.15
-CALM_A = 0.1  # A per row: a current that changes faster is a transient. ASSUMPTION
-FLOWS_A = 0.05  # A: a smaller current is cut off at zero. ASSUMPTION: eight counts
-FEWEST_ROWS = 1000  # rows of a run, fewest, for a spectrum. ASSUMPTION
 
 
 def rate_of(torque: Problem) -> Array:
@@ -148,61 +134,3 @@ def follows_direction(e: Array, problem: Problem) -> bool:
     a, b = np.array(pairs).T
     over = min(max(OVER, LUCK / np.sqrt(len(pairs))), SURELY)
     return bool(float(a @ b) < -over * np.sqrt(float(a @ a) * float(b @ b)))
-
-
-def pick_up(frame: Frame) -> Finding | None:
-    """A line at fixed Hz on the currents that keeps its frequency in every run, beyond the analysis band."""
-    if frame.get("current_a") is None:
-        return None
-    same = np.zeros((0, 5))
-    for name in ("current_a", "current_b"):
-        found = _lines(frame, name)
-        strong = found[(found[:, 1] > PEAK) & (found[:, 2] > COUNTS * frame.scale["adc_A_per_count"])]
-        if len(strong) < max(3, len(found) // 2):
-            continue
-        near = strong[np.abs(strong[:, 0] - np.median(strong[:, 0])) < SAME_HZ]
-        if len(near) >= 0.7 * len(strong) and len(near) > len(same):
-            same = near
-    if not len(same):
-        return None
-    hertz, power, size, share, bins = same.T
-    middle, rate = float(np.median(hertz)), 1 / frame.period_s
-    return Finding(
-        UNKNOWN,
-        "E",
-        "time",
-        frequency=middle,
-        # a bin of a periodogram over its median is exponential with mean 1/ln 2; so many bins were looked at
-        evidence=float(np.sum((power * np.log(2) - np.log(bins)) / np.log(10))),
-        share=float(np.median(share)),
-        note=f"a line at {middle:.2f} Hz on the currents at every speed (sampled at {rate:.0f} Hz)",
-        parameters={"amplitude": middle_of(size, "A")},
-    )
-
-
-def _lines(frame: Frame, name: str) -> Array:
-    """The strongest fast line of a current in every run (n, 5).
-
-    Hz, power over the median, amplitude in A, share of the fast current's variance, bins looked at.
-    """
-    out = []
-    dt = frame.period_s
-    x, ok = fill(frame.columns[name], frame.run)
-    for k in np.unique(frame.run):
-        rows = frame.run == k
-        part = x[rows] - np.convolve(np.pad(x[rows], 4, mode="edge"), np.ones(9) / 9, "valid")
-        busy = np.abs(np.gradient(x[rows])) < CALM_A
-        part = np.where(ok[rows] & busy & (x[rows] > FLOWS_A), part, 0.0)
-        used = int(np.count_nonzero(part))
-        if used < FEWEST_ROWS:
-            continue
-        power = np.abs(np.fft.rfft(part)) ** 2
-        hertz = np.fft.rfftfreq(len(part), dt)
-        power[hertz < FASTEST_BAND_HZ] = 0.0
-        j = int(np.argmax(power))
-        level = float(np.median(power[hertz > FASTEST_BAND_HZ])) or 1e-30
-        amplitude = 2 * float(np.sqrt(power[j])) / used
-        share = amplitude**2 / 2 / max(float(np.sum(part**2)) / used, 1e-300)
-        bins = int(np.sum(hertz > FASTEST_BAND_HZ))
-        out.append((float(hertz[j]), float(power[j] / level), amplitude, min(share, 1.0), bins))
-    return np.array(out).reshape(-1, 5)

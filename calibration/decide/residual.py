@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 
 from calibration.arrays import Array, Mask
 from calibration.balances.candidate import Candidate
-from calibration.balances.pickup import pick_up
-from calibration.balances.problem import Problem
+from calibration.balances.pickup import TOP, pick_up
 from calibration.balances.view import View
 from calibration.decide import thresholds as limits
 from calibration.decide.parameters import finding_of
@@ -250,12 +249,13 @@ def beside(c: Candidate, s: Selection) -> Candidate:
     return replace(c, columns=c.columns - s.columns @ np.linalg.lstsq(x, y, rcond=None)[0])
 
 
-def quick_lines(view: View, problem: Problem) -> list[Finding]:
-    """A line in the response's column that the filter takes away before any name is looked for."""
-    line = pick_up(view) if view.dynamic else None
+def quick_lines(view: View, channel: str, top: float = TOP) -> list[Finding]:
+    """A line in the response's column that the filter takes away before any name is looked for; `top` as in
+    `pick_up`."""
+    line = pick_up(view, top) if view.dynamic else None
     if line is None:
         return []
     frequency, amplitude = line
     note = f"{frequency:.5g} Hz in the column itself: the filter takes it away, no error shows it"
-    size = {"amplitude": Parameter(amplitude, problem.unit)}
-    return [Finding(UNKNOWN, problem.channel, "time", frequency=frequency, note=note, parameters=size)]
+    size = {"amplitude": Parameter(amplitude, view.unit)}
+    return [Finding(UNKNOWN, channel, "time", frequency=frequency, note=note, parameters=size)]

@@ -180,7 +180,8 @@ def _told(view: View, when: Timed, notes: list[str]) -> Balance:
     findings = as_told(named, scene)
     findings = of_calibrated(findings, scene, problem.by_name(s.after.beta)) + beyond
     left = left_over(s, scene, floor)
-    findings = settle(of_one_domain(findings, left), left, problem.channel) + quick_lines(view, problem)
+    findings = settle(of_one_domain(findings, left), left, problem.channel)
+    findings += quick_lines(view, problem.channel)
     tried = controls(s, order_beside(s, scene))
     needs = [] if floor and together.held.after <= floor else close(together)
     return Balance(
