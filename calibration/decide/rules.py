@@ -249,14 +249,6 @@ def feeds_energy(s: Selection) -> tuple[int, str] | None:
     return k, f"beside it {bad} comes out negative, which feeds energy"
 
 
-def harmful(s: Selection) -> tuple[int, str] | None:
-    """The name without which the held-out error is least, where it grows with all of them."""
-    if not s.held.after > s.held.before:
-        return None
-    best = int(np.argmin([_left(x) for x in _each_left_out(s)]))
-    return best, "the held-out error grows with what was found"
-
-
 def below_floor(s: Selection) -> tuple[int, str] | None:
     """Names are for what is above the floor. Unless most goes with them: then the floor is what a coarse
     sensor may hide, and did not. Or they are for fitted rows, as what is far above it there."""
@@ -329,14 +321,6 @@ def _part(c: Candidate, good: Mask) -> Candidate:
     labels = tuple(x for x, g in zip(c.labels, good, strict=True) if g)
     shape = None if whole is None else lambda p: whole(p)[:, good]
     return replace(c, columns=c.columns[:, good], labels=labels, shape=shape)
-
-
-def negative(s: Selection, standard_errors: float = 0.0) -> str:
-    """The first term that only a fit has negative, by more than some standard errors; or empty."""
-    for name, x in s.problem.named(s.after).items():
-        if name in POSITIVE and x.value < -standard_errors * x.error:
-            return name
-    return ""
 
 
 def _turned(s: Selection) -> str:

@@ -18,7 +18,6 @@ from calibration.decide.tolerance import NEEDED, calibrated_numbers, changes, se
 from calibration.finding import UNKNOWN, Finding
 from calibration.look.axis_result import AxisResult
 from calibration.look.scene import scene_of_pair
-from calibration.look.volts import DENIED, volts_deny
 from calibration.names import NAMES, offered
 from calibration.names.adc_offset import NAME as OFFSET
 from calibration.statistics.whitening import white_noise
@@ -98,11 +97,6 @@ def _pass(result: AxisResult, torque: Torque) -> tuple[Selection, Mask, Mask]:
     else:
         candidates = []  # nothing but that history: no torque effect can be told from it
     s = select(p, candidates, result.rng)
-    if denied := {c.name for c, beta in s.fitted if volts_deny(result, c, float(beta[0]))}:
-        fresh = [("T", name, DENIED) for name in sorted(denied)]
-        result.refused += [x for x in fresh if x not in result.refused]
-        candidates = [c for c in candidates if c.name not in denied]
-        s = select(p, candidates, result.rng)
     if pair := cancelling(s):  # again with either, which may have been bent by the other
         keys = [s.candidates[k].key for k in pair]
         without = [select(p, [c for c in candidates if c.key != key], result.rng) for key in keys]

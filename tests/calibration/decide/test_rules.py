@@ -12,7 +12,7 @@ from calibration.decide.residual import domain_share
 from calibration.decide.select import select
 from calibration.decide.thresholds import MODEL_ERROR, STILL_MISSING, Earned
 from calibration.decide.verdict import judge, kind_of, probability
-from calibration.decide.withdraw import failed_controls, unnamed, withdraw
+from calibration.decide.withdraw import unnamed, withdraw
 from calibration.finding import Finding, Parameter
 from calibration.statistics.tails import middle
 from tests.calibration.decide.made import problem, term
@@ -85,15 +85,15 @@ def test_a_name_keeps_its_place_unless_its_own_control_was_accepted() -> None:
     drag = Finding("drag", "T", "time")
     place = {"name": "gear", "stage": "shaft1", "harmonic": 1}
     accepted = [{"what": "time reversed (gear)", "accepted": True, **place}]
-    kept, refused = withdraw([gear, drag], failed_controls(accepted))
+    kept, refused = withdraw([gear, drag], accepted)
     assert kept == [drag]
     assert refused[0][:2] == ("T", "gear on shaft1") and "time reversed" in refused[0][2]
     other = [
         {**accepted[0], "harmonic": 2},
         {**accepted[0], "what": "order 2 in place of 3 (brake)", "name": "brake"},
     ]
-    assert withdraw([gear, drag], failed_controls(other)) == ([gear, drag], [])
-    none = failed_controls([{**accepted[0], "accepted": False}])
+    assert withdraw([gear, drag], other) == ([gear, drag], [])
+    none = [{**accepted[0], "accepted": False}]
     assert withdraw([gear, drag], none) == ([gear, drag], [])
 
 

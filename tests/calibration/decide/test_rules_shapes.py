@@ -15,7 +15,6 @@ from calibration.decide.rules import (
     larger_than_the_response,
     lesser_of_one_order,
     needless,
-    negative,
     of_the_steps,
     signed,
     superfluous,
@@ -162,24 +161,6 @@ def test_two_that_leave_less_than_half_of_the_lesser_cancel(
     left = 10 * share / (10 * np.hypot(1, share) if share > 1 else 10)
     assert (left < 0.5) == (pair is not None)
     assert cancelling(s) == pair
-
-
-@pytest.mark.parametrize(
-    ("size", "errors", "wrong"), [(-1.0, 1.0, "viscous"), (1.0, 1.0, ""), (-1.0, 1e6, "")]
-)
-def test_the_first_declared_term_that_is_negative_is_said(size: float, errors: float, wrong: str) -> None:
-    base = np.column_stack([C, A, B])
-    labels = [("offset", "N m"), ("viscous", "N m s"), ("coulomb", "N m")]
-    assert negative(of(-C + size * A + B, base=base, base_labels=labels), errors) == wrong
-    if errors == 1.0 and size < 0:
-        assert negative(of(-C + size * A + B, base=base, base_labels=labels)) == wrong
-
-
-def test_a_term_that_is_negative_by_half_its_error_is_so_but_not_beyond_it() -> None:
-    labels = [("viscous", "N m s")]
-    fit = of(0 * A, base=A[:, None], base_labels=labels).before
-    s = of(-(fit.beta[0] + 0.5 * fit.errors[0]) * A, base=A[:, None], base_labels=labels)
-    assert (negative(s), negative(s, 1.0)) == ("viscous", "")
 
 
 def test_parts_of_the_wrong_sign_go_and_the_others_stay() -> None:

@@ -17,7 +17,6 @@ from calibration.decide.rules import (
     clear,
     displaced,
     dominant,
-    harmful,
     remainder,
     worth_little,
 )
@@ -123,12 +122,6 @@ def test_the_strongest_takes_nineteen_twentieths_alone(alone: float, name: str) 
     assert dominant(Told([], {"": 100.0})) == ""  # type: ignore[arg-type]
     twice = Told(["brake_drag", "play", "brake_drag"], {"bbp": 10.0, "bb": alone, "p": 90.0})
     assert dominant(twice) == name  # type: ignore[arg-type]
-
-
-@pytest.mark.parametrize(("after", "gone"), [(100.0, None), (101.0, 1)])
-def test_what_makes_the_held_out_error_grow_goes_the_worst_first(after: float, gone: int | None) -> None:
-    s = Told(["brake_drag", "play"], {"bp": after, "b": 90.0, "p": 95.0})
-    assert asked(harmful, s) == gone
 
 
 @pytest.mark.parametrize(

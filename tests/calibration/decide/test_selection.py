@@ -13,10 +13,8 @@ from calibration.decide.rules import (
     dominant,
     each,
     feeds_energy,
-    harmful,
     leave_out,
     lesser_of_one_order,
-    negative,
     of_the_steps,
     remainder,
     superfluous,
@@ -99,7 +97,7 @@ def test_what_hardly_adds_anything_is_left_out_and_what_does_stays() -> None:
     assert [
         c.name for c in leave_out(of({"brake_drag": 2.0, "cable_wrap": 0.0}), worth_little).candidates
     ] == ["brake_drag"]
-    assert len(leave_out(of({"brake_drag": 2.0, "load_friction": 1.0}), worth_little, harmful).chosen) == 2
+    assert len(leave_out(of({"brake_drag": 2.0, "load_friction": 1.0}), worth_little).chosen) == 2
 
 
 def test_a_small_name_beside_one_that_explains_nearly_all_is_its_remainder() -> None:
@@ -114,7 +112,7 @@ def test_without_held_out_rows_nothing_is_compared() -> None:
     s = of({"brake_drag": 2.0, "cable_wrap": 0.0})
     blind = s.on(replace(s.problem, held=np.zeros(ROWS, dtype=bool)))
     assert np.isnan(blind.held.after) and dominant(blind) == ""
-    assert len(leave_out(blind, worth_little, remainder, harmful).chosen) == 2
+    assert len(leave_out(blind, worth_little, remainder).chosen) == 2
 
 
 def test_names_are_for_what_is_above_the_floor() -> None:
@@ -151,15 +149,6 @@ def test_of_two_names_at_one_order_the_lesser_goes_where_it_adds_little() -> Non
     assert found is not None and found[0] == 1 and "cogging" in found[1]
     apart = replace(bent, order=3.1)
     assert lesser_of_one_order(s.put(1, replace(s.chosen[1], candidate=apart))) is None
-
-
-@pytest.mark.parametrize(("size", "wrong"), [(-3.0, "inertia"), (3.0, ""), (-0.001, "")])
-def test_a_mass_that_comes_out_negative_beyond_its_error_is_said(size: float, wrong: str) -> None:
-    rng = np.random.default_rng(5)
-    x = rng.standard_normal((ROWS, 1))
-    p = problem(size * x[:, 0] + NOISE * rng.standard_normal(ROWS), base=x)
-    p.base_labels = [("inertia", "kg m2")]
-    assert negative(Selection.of(p), 2.0) == wrong
 
 
 def test_a_candidate_moves_in_what_its_columns_depend_on_and_in_nothing_else() -> None:
