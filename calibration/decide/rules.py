@@ -16,7 +16,7 @@ from calibration.decide import thresholds as limits
 from calibration.decide.accept import refuse, scores
 from calibration.decide.heldout import HeldOut
 from calibration.decide.parameters import parameters_of
-from calibration.decide.scan import Contender, fit_with
+from calibration.decide.scan import fit_with
 from calibration.decide.selection import Selection
 from calibration.finding import UNKNOWN
 from calibration.names import NAMES
@@ -131,8 +131,6 @@ def within_bounds(resolved: float) -> Rule:
         if any(at[n] <= resolved for n in loops if n in at):
             return "narrower than the sensor's steps show"
         told = parameters_of(s, k)
-        if "width" in told and (told["width"].low or 0.0) < 0.0:
-            return "as wide as nothing, by its interval"
         if "order" in told and (told["order"].low or 0.0) < 0.0:
             return "of any order, by its interval"
         return "no damping of a resonance" if "damping" in told and not rings(told["damping"]) else ""
@@ -213,23 +211,6 @@ def dominant(s: Selection) -> str:
     name = min(alone, key=lambda n: alone[n], default="")
     taken = s.held.taken
     return name if name and s.held.before**2 - alone[name] >= limits.DOMINANT * taken > 0 else ""
-
-
-def displaced(smooth: Contender) -> Rule:
-    """A name that is worth little beside a smooth function of its domain, and leaves much more than it."""
-    domain = smooth.candidate.domain
-
-    def why(s: Selection, k: int) -> str:
-        c = s.candidates[k]
-        # knots follow weights and lines; friction of one harmonic is a guess at what knots show
-        if c.domain != domain or (domain == "axis_angle" and not NAMES[c.name].waves_of_friction):
-            return ""
-        alone, both = _left(s.put(k, smooth)), _left(s.keep([*s.chosen, smooth]))
-        little = alone - both < limits.REMAINDER * (s.held.before**2 - both)
-        of_all = little and _left(s) > limits.STILL_MISSING**2 * alone
-        return f"a smooth function of {domain} leaves a fraction of what it leaves" if of_all else ""
-
-    return each(why)
 
 
 def feeds_energy(s: Selection) -> tuple[int, str] | None:

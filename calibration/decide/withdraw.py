@@ -27,35 +27,14 @@ def withdraw(
     """Findings that keep their name, and a refusal for each that what is wrong on purpose fits as well."""
     kept, refused = list[Finding](), list[Refused]()
     for f in findings:
-        if wrong := accepted(f, controls):
+        own = [c for c in controls if (c["name"], c["stage"], c["harmonic"]) == f.key]
+        wrong = ", ".join(c["what"].split(" (")[0] for c in own if c["accepted"])
+        if wrong and f.name != UNKNOWN:
             what = f"{f.name} on {f.stage}" if f.stage else f.name
-            refused.append((f.channel, what, f"withdrawn: accepted as well with {', '.join(wrong)}"))
+            refused.append((f.channel, what, f"withdrawn: accepted as well with {wrong}"))
         else:
             kept.append(f)
     return kept, refused
-
-
-def accepted(f: Finding, controls: Sequence[Mapping[str, Any]]) -> list[str]:
-    """Accepted controls of the finding's name and place, or of its order: a line may have been renamed."""
-    line = f"in place of {f.order:.4g} (" if f.order else None
-    return [
-        c["what"].split(" (")[0]
-        for c in controls
-        if c["accepted"]
-        and ((c["name"], c["stage"], c["harmonic"]) == f.key or bool(line and line in c["what"]))
-    ]
-
-
-def unnamed(findings: list[Finding], controls: Sequence[Mapping[str, Any]]) -> list[Finding]:
-    """The findings of a rig's balance; what loses its name stays as `unknown`."""
-    out = []
-    for f in findings:
-        wrong = accepted(f, controls)
-        if wrong and f.name != UNKNOWN:
-            note = f"{wrong[0]} fits as well: the name {f.name} is withdrawn. {f.note}".strip()
-            f = replace(f, name=UNKNOWN, stage=None, harmonic=None, equivalent=[], note=note)
-        out.append(f)
-    return out
 
 
 def as_told(findings: list[Finding], scene: Scene) -> list[Finding]:

@@ -15,7 +15,6 @@ from calibration.decide.rules import (
     below_surrogates,
     cancelled,
     clear,
-    displaced,
     dominant,
     remainder,
     worth_little,
@@ -122,28 +121,6 @@ def test_the_strongest_takes_nineteen_twentieths_alone(alone: float, name: str) 
     assert dominant(Told([], {"": 100.0})) == ""  # type: ignore[arg-type]
     twice = Told(["brake_drag", "play", "brake_drag"], {"bbp": 10.0, "bb": alone, "p": 90.0})
     assert dominant(twice) == name  # type: ignore[arg-type]
-
-
-@pytest.mark.parametrize(
-    ("name", "domain", "left", "gone"),
-    [
-        # smooth alone 10, both 8: the name is worth 2 of 92, and leaves four times of what the other does
-        ("brake_drag", "time", {"b": 41.0, "s": 10.0, "bs": 8.0}, True),
-        ("brake_drag", "velocity", {"b": 41.0, "s": 10.0, "bs": 8.0}, False),
-        ("brake_drag", "time", {"b": 39.0, "s": 10.0, "bs": 8.0}, False),
-        ("brake_drag", "time", {"b": 41.0, "s": 10.0, "bs": 7.2}, False),
-        ("torque_ripple", "axis_angle", {"t": 41.0, "s": 10.0, "st": 8.0}, False),
-        ("position_friction", "axis_angle", {"p": 41.0, "s": 10.0, "ps": 8.0}, True),
-    ],
-)
-def test_a_smooth_function_displaces_a_name_of_its_domain(
-    name: str, domain: str, left: dict[str, float], gone: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setitem(DOMAINS, "position_friction", "axis_angle")
-    smooth: Any = SimpleNamespace(candidate=replace(term("smooth", NONE), domain=domain))
-    found = displaced(smooth)(Told([name], left))  # type: ignore[arg-type]
-    assert (found is not None) == gone
-    assert found is None or f"a smooth function of {domain} leaves" in found[1]
 
 
 @pytest.mark.parametrize(("left", "gone"), [({"b": 5.0, "p": 6.0}, 1), ({"b": 6.0, "p": 5.0}, 0)])
