@@ -138,22 +138,16 @@ def within_bounds(resolved: float) -> Rule:
     return each(why)
 
 
-def cancelling(s: Selection) -> tuple[int, int] | None:
-    """Two effects of which one takes most of the other away: neither is as large as it is said to be."""
+def cancelled(s: Selection) -> tuple[int, str] | None:
+    """Of two effects of which one takes most of the other away, so that neither is as large as it is said to
+    be, the one whose absence leaves less on held-out rows."""
     each_effect = [s.effect(k)[s.problem.train] for k in range(len(s.chosen))]
     for j, k in combinations(range(len(s.chosen)), 2):
         one, other = each_effect[j], each_effect[k]
         if np.std(one + other) < limits.CANCELS * min(float(np.std(one)), float(np.std(other))):
-            return j, k
+            gone = min((j, k), key=lambda k: float(np.nan_to_num(_left(s.without(k)))))
+            return gone, f"cancels against {s.candidates[j + k - gone].say()}"
     return None
-
-
-def cancelled(s: Selection) -> tuple[int, str] | None:
-    """Of two effects that cancel each other the one whose absence leaves less on held-out rows."""
-    if (pair := cancelling(s)) is None:
-        return None
-    gone = min(pair, key=lambda k: float(np.nan_to_num(_left(s.without(k)))))
-    return gone, f"cancels against {s.candidates[sum(pair) - gone].say()}"
 
 
 def larger_than_the_response(s: Selection, k: int) -> bool:

@@ -13,7 +13,6 @@ from calibration.decide.heldout import HeldOut
 from calibration.decide.rules import (
     below_floor,
     below_surrogates,
-    cancelled,
     clear,
     dominant,
     remainder,
@@ -121,17 +120,6 @@ def test_the_strongest_takes_nineteen_twentieths_alone(alone: float, name: str) 
     assert dominant(Told([], {"": 100.0})) == ""  # type: ignore[arg-type]
     twice = Told(["brake_drag", "play", "brake_drag"], {"bbp": 10.0, "bb": alone, "p": 90.0})
     assert dominant(twice) == name  # type: ignore[arg-type]
-
-
-@pytest.mark.parametrize(("left", "gone"), [({"b": 5.0, "p": 6.0}, 1), ({"b": 6.0, "p": 5.0}, 0)])
-def test_of_two_that_cancel_the_one_whose_absence_leaves_less_goes(
-    left: dict[str, float], gone: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(rules, "cancelling", lambda s: (0, 1))
-    s = Told(["brake_drag", "play"], {"bp": 4.0, **left})
-    assert cancelled(s) == (gone, f"cancels against {s.names[1 - gone]}")  # type: ignore[arg-type]
-    monkeypatch.setattr(rules, "cancelling", lambda s: None)
-    assert cancelled(s) is None  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(("share", "z", "found"), [(0.6, 4.0, True), (0.4, 4.0, False), (0.6, 2.0, False)])
