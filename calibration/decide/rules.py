@@ -14,7 +14,6 @@ from calibration.arrays import Mask
 from calibration.balances.candidate import Candidate
 from calibration.decide import thresholds as limits
 from calibration.decide.accept import refuse, scores
-from calibration.decide.heldout import HeldOut
 from calibration.decide.parameters import parameters_of
 from calibration.decide.scan import fit_with
 from calibration.decide.selection import Selection
@@ -239,32 +238,17 @@ def clear(s: Selection) -> bool:
     return s.held.share > limits.CLEAR_SHARE and s.held.z > limits.CLEAR_Z
 
 
-def of_the_steps(s: Selection) -> tuple[int, str] | None:
-    """Names that hardly take anything off the rows which a sensor's coarse steps do not spoil."""
-    held = _off_the_steps(s)
-    if held is None or not held.share <= limits.NOISE_SHARE:
-        return None
-    others = [_off_the_steps(x) for x in _each_left_out(s)]
-    k = int(np.argmin([np.inf if one is None else float(np.nan_to_num(one.after)) for one in others]))
-    return k, "only rows that the position's steps spoil have it"
-
-
-def _off_the_steps(s: Selection) -> HeldOut | None:
-    """Held-out errors on rows that coarse steps do not spoil; None where no steps do, or too few are left."""
-    if s.problem.resolved is None:
-        return None
-    p, rows = s.problem, s.problem.resolved[0]
-    # of files in turn the fit stays that of all their rows
-    clean = replace(p, valid=p.valid & rows) if p.turned is None else replace(p, turned=p.turned & rows)
-    return s.held_on(clean) if clean.test.sum() >= limits.FEWEST_TOLD else None
-
-
 def _clear_of_steps(s: Selection) -> bool:
     """Whether names explain the rows that coarse steps do not spoil: reversals alone raised the floor."""
-    held = _off_the_steps(s)
-    if held is None or s.problem.resolved is None:
+    p = s.problem
+    if p.resolved is None:
         return False
-    return held.before > s.problem.resolved[1] and held.z > SURE_Z and held.share > limits.CLEAR_SHARE
+    rows, noise = p.resolved
+    # of files in turn the fit stays that of all their rows
+    clean = replace(p, valid=p.valid & rows) if p.turned is None else replace(p, turned=p.turned & rows)
+    held = s.held_on(clean)
+    enough = clean.test.sum() >= limits.FEWEST_TOLD
+    return bool(enough and held.before > noise and held.z > SURE_Z and held.share > limits.CLEAR_SHARE)
 
 
 def _each_left_out(s: Selection) -> list[Selection]:

@@ -15,7 +15,6 @@ from calibration.decide.rules import (
     larger_than_the_response,
     lesser_of_one_order,
     needless,
-    of_the_steps,
     signed,
     superfluous,
     within_bounds,
@@ -258,18 +257,3 @@ def test_below_the_floor_names_stay_that_rows_off_the_steps_need(
     assert below_floor(of(y, one("brake_drag", A), floor=20.0)) is not None
     few = CLEAN & ~s.problem.held
     assert below_floor(of(y, one("brake_drag", A), floor=20.0, resolved=(few, noise))) is not None
-
-
-def test_of_two_names_the_one_goes_that_clean_rows_do_not_need() -> None:
-    """Rows off the steps do not have the first one, whose size comes from spoilt rows."""
-    y = np.where(CLEAN, 0.0, B + C)
-    some = [one("load_friction", np.where(CLEAN, A, C)), one("brake_drag", np.where(CLEAN, 0.0, B))]
-    for k in (0, 1):
-        found = of_the_steps(of(y, some[k], some[1 - k], resolved=(CLEAN, NOISE)))
-        assert found == (k, "only rows that the position's steps spoil have it")
-    assert of_the_steps(of(y, *some)) is None
-    assert of_the_steps(of(y + 2 * A, one("brake_drag", A), resolved=(CLEAN, NOISE))) is None
-    few = np.isin(np.arange(ROWS), np.flatnonzero(problem(A).held)[:59]) | ~problem(A).held
-    assert of_the_steps(of(y, one("brake_drag", B), resolved=(few, NOISE))) is None
-    more = np.isin(np.arange(ROWS), np.flatnonzero(problem(A).held)[:60]) | ~problem(A).held
-    assert of_the_steps(of(0 * A, one("brake_drag", B), resolved=(more, NOISE))) is not None

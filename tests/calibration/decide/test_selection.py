@@ -15,7 +15,6 @@ from calibration.decide.rules import (
     feeds_energy,
     leave_out,
     lesser_of_one_order,
-    of_the_steps,
     remainder,
     superfluous,
     worth_little,
@@ -121,21 +120,6 @@ def test_names_are_for_what_is_above_the_floor() -> None:
         s.problem.floor = 10.0
     assert below_floor(faint) is not None  # most of what is left stays
     assert below_floor(clear) is None  # a coarse sensor's floor may hide it, and did not
-
-
-@pytest.mark.parametrize("in_turn", [False, True])
-def test_what_only_rows_that_coarse_steps_spoil_have_is_no_effect(in_turn: bool) -> None:
-    """Every second row is spoilt; of two names the one goes that is worse on the others."""
-    s = of({"brake_drag": 2.0, "load_friction": 0.0})
-    clean = np.arange(ROWS) % 2 == 0
-    for k, where, stays in ((0, clean, None), (1, ~clean, 1)):
-        column = np.where(where, s.candidates[k].columns[:, 0], 0.0)
-        y = 2.0 * column + NOISE * np.random.default_rng(9).standard_normal(ROWS)
-        p = replace(s.problem, y=y, resolved=(clean, NOISE), session=s.problem.run)
-        p = p.in_turn() if in_turn else p
-        alone = Selection.of(p)
-        alone = alone.keep([contender(alone, term(s.candidates[k].name, column[:, None]))])
-        assert (of_the_steps(alone) is None) == (stays is None)
 
 
 def test_of_two_names_at_one_order_the_lesser_goes_where_it_adds_little() -> None:
