@@ -135,16 +135,8 @@ def _instead(steady: Timed, slow: Timed) -> bool:
     """Whether effects of one size for all files explain what an offset fitted anew in every file does, or it
     explains nothing."""
     one, other = steady.found[0], slow.found[0]
-    if one.held.after <= other.held.after:
-        return True
-    if not one.chosen or other.chosen:
-        return _better(steady, slow)
-    return one.held.taken > AS_MUCH * (one.held.before**2 - other.held.after**2)
-
-
-def _better(one: Timed, other: Timed) -> bool:
-    """Whether one has found something, and leaves less on held-out rows than the other."""
-    return bool(one.found[0].chosen) and one.found[0].held.after < other.found[0].held.after
+    much = one.held.taken > AS_MUCH * (one.held.before**2 - other.held.after**2)
+    return one.held.after <= other.held.after or (bool(one.chosen) and not other.chosen and much)
 
 
 def _sharper(first: Timed, view: View, made: Make, attempt: Callable[[], Timed]) -> Timed:
@@ -152,8 +144,10 @@ def _sharper(first: Timed, view: View, made: Make, attempt: Callable[[], Timed])
     shown = (view.standstill, view.direction)
     if first.found[0].chosen:
         fade(view, sharpest(view, made, first))
-    if view.standstill != shown[0] and _better(again := attempt(), first):
-        return again
+    if view.standstill != shown[0]:
+        s = (again := attempt()).found[0]
+        if s.chosen and s.held.after < first.found[0].held.after:
+            return again
     view.standstill, view.direction = shown
     return first
 
