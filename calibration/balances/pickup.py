@@ -18,14 +18,15 @@ BY_CHANCE = 1e-6  # that noise alone makes the highest of all bins as high. ASSU
 # of the column's own noise from row to row: a weaker line changes nothing that is told. ASSUMPTION
 MATTERS = 0.5
 JUMP = 8.0  # of the usual deviation: a sine has 1.4 of its own at most (ASSUMPTION)
-ALIKE = 2.0  # factor within which its size must be the same in slow, middling and quick rows. ASSUMPTION
+ALIKE = 2.5  # factor within which its size must be the same in slow, middling and quick rows. ASSUMPTION
 APART = 0.7  # of the quick third's speed, below which the slow third's is another speed. ASSUMPTION
 
 
-def pick_up(view: View) -> tuple[float, float] | None:
+def pick_up(view: View, top: float = TOP) -> tuple[float, float] | None:
     """Hz and amplitude, in the response's unit, of the strongest line that is there at every speed; or None.
 
     What turns with the drive has a frequency that follows the speed, so at one speed alone nothing is said.
+    top: of a line, cycles per row.
     """
     full = view.columns.get(view.response.channel)
     if full is None or view.sigma <= 0 or view.response.divide_by:
@@ -42,7 +43,7 @@ def pick_up(view: View) -> tuple[float, float] | None:
     for a, b in spans:
         power += np.abs(np.fft.rfft(quick[a:b] * np.hanning(b - a), size)) ** 2 / (b - a)
     f = np.fft.rfftfreq(size)  # cycles per row
-    use = (f > QUICK / view.sigma) & (f < TOP)
+    use = (f > QUICK / view.sigma) & (f < top)
     if use.sum() < 4 * NEAR:
         return None
     ratio = np.where(use, power / np.maximum(around(power, NEAR), 1e-300), 0.0)

@@ -9,12 +9,11 @@ from numpy.typing import NDArray
 
 from calibration.arrays import Array, Mask
 from calibration.balances.candidate import Candidate
-from calibration.balances.pickup import pick_up
-from calibration.balances.problem import Problem
+from calibration.balances.pickup import TOP, pick_up
 from calibration.balances.view import View
 from calibration.decide import thresholds as limits
 from calibration.decide.parameters import finding_of
-from calibration.decide.rules import clear, displaced, larger_than_the_response, leave_out
+from calibration.decide.rules import clear, larger_than_the_response
 from calibration.decide.select import select
 from calibration.decide.selection import Selection
 from calibration.finding import UNKNOWN, Finding, Parameter
@@ -231,10 +230,8 @@ def beyond_names(s: Selection, scene: Scene) -> tuple[Selection, Selection, list
         # what is little is no function of anything, unless most of it goes with that
         if not more.chosen or (scene.force and little and not clear(more)):
             break
-        kept = leave_out(s, displaced(more.chosen[0])) if not findings else s
-        s, names = kept, together if kept is s else kept
-        together = names.keep([*names.chosen, *more.chosen])
-        findings.append(finding_of(together, len(names.chosen)))
+        together = together.keep([*together.chosen, *more.chosen])
+        findings.append(finding_of(together, len(together.chosen) - 1))
     return s, together, findings
 
 
@@ -250,12 +247,13 @@ def beside(c: Candidate, s: Selection) -> Candidate:
     return replace(c, columns=c.columns - s.columns @ np.linalg.lstsq(x, y, rcond=None)[0])
 
 
-def quick_lines(view: View, problem: Problem) -> list[Finding]:
-    """A line in the response's column that the filter takes away before any name is looked for."""
-    line = pick_up(view) if view.dynamic else None
+def quick_lines(view: View, channel: str, top: float = TOP) -> list[Finding]:
+    """A line in the response's column that the filter takes away before any name is looked for; `top` as in
+    `pick_up`."""
+    line = pick_up(view, top) if view.dynamic else None
     if line is None:
         return []
     frequency, amplitude = line
     note = f"{frequency:.5g} Hz in the column itself: the filter takes it away, no error shows it"
-    size = {"amplitude": Parameter(amplitude, problem.unit)}
-    return [Finding(UNKNOWN, problem.channel, "time", frequency=frequency, note=note, parameters=size)]
+    size = {"amplitude": Parameter(amplitude, view.unit)}
+    return [Finding(UNKNOWN, channel, "time", frequency=frequency, note=note, parameters=size)]

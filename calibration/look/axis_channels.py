@@ -6,20 +6,24 @@ import numpy as np
 
 from calibration.arrays import Array
 from calibration.balances.candidate import Candidate
+from calibration.balances.filters import Filter
 from calibration.balances.floors import floors_of_pair
 from calibration.balances.frame import build_frame
 from calibration.balances.kinematic import kinematic_problem, roller_problem
-from calibration.balances.motion import motion_of
+from calibration.balances.motion import Motion, motion_of
 from calibration.balances.problem import Problem
 from calibration.balances.thresholds import LEAST_COMPLIANCE
 from calibration.balances.torque import WIDTH, Transmission
-from calibration.decide.broadband import pick_up, unexplained_volts
+from calibration.balances.view import NYQUIST
+from calibration.decide.broadband import unexplained_volts
 from calibration.decide.delays import delay_findings
 from calibration.decide.heldout import choose_held_out
 from calibration.decide.merge import merge
+from calibration.decide.residual import quick_lines
 from calibration.decide.select import select
 from calibration.decide.tolerance import changes, train_stiffness
-from calibration.inputs.declaration import Rig
+from calibration.finding import Finding
+from calibration.inputs.declaration import Response, Rig
 from calibration.inputs.declaredplant import declared_numbers
 from calibration.inputs.run import Run
 from calibration.look import applied
@@ -39,6 +43,8 @@ from plant.units import ARCSEC
 
 # of the mean square of the 5 ms velocity: one count of it is ten times the interpolation error. arithmetic
 FINE_MARGIN = 0.002
+FLOWS_A = 0.05  # A: a smaller current is cut off at zero. ASSUMPTION: eight counts
+QUICK_ROWS = 1.25  # rows, standard deviation: what is quicker is within no analysis band. ASSUMPTION: 15 Hz
 
 
 def analyse(runs: list[Run], rig: Rig, options: Options) -> AxisResult:
@@ -56,9 +62,6 @@ def analyse(runs: list[Run], rig: Rig, options: Options) -> AxisResult:
     options.tell(f"once more without the {fault.name.replace('_', ' ')}")
     again = _look(applied.corrected_runs(result, fault), rig, options)
     before = applied.before_of(result, again, fault)
-    refusal = applied.judged(before, again, fault)
-    if refusal is not None:
-        return applied.without(result, fault, refusal)
     again.before = before
     if fault.name == GAP.name:  # the motors see the crossings that the corrected encoder leaves out
         again.selections["K"] = result.selections["K"]
@@ -145,8 +148,25 @@ def full_rate(result: AxisResult) -> None:
             result.selections["S1"] = s
             result.collect(s)
     driven = any(f.name == DISTURBANCE.name for f in result.findings)  # its harmonics are no pick-up
-    if not driven and (line := pick_up(frame)) is not None:
-        result.findings.append(line)
+    if not driven:
+        result.findings += pick_ups(full)[:1]
+
+
+def pick_ups(m: Motion) -> list[Finding]:
+    """Lines of the full rate on the currents: mains, which 100 rows a second hold at half a cycle per row."""
+    found: list[Finding] = []
+    for name in ("current_a", "current_b") if m.frame.get("current_a") is not None else ():
+        current, ok = m.frame.filled(name)
+        view = replace(
+            m,
+            response=Response("current", "A"),
+            columns=m.columns | {"current": current},
+            filter=Filter(QUICK_ROWS),
+            ok=m.ok & ok & (current > FLOWS_A),
+            quanta={"current": m.frame.scale["adc_A_per_count"]},
+        )
+        found += quick_lines(view, "E", NYQUIST)
+    return found
 
 
 def _candidates(result: AxisResult, key: str, pair: Pair, p: Problem) -> list[Candidate]:

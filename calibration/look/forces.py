@@ -13,14 +13,13 @@ from calibration.balances.problem import Problem
 from calibration.balances.slowoffset import offset_order, slowness
 from calibration.balances.view import View, fade
 from calibration.decide.controls import controls, order_beside
-from calibration.decide.onecolumn import by_one_column
 from calibration.decide.parameters import findings_of
 from calibration.decide.residual import beyond_names, left_over, of_one_domain, quick_lines, settle
 from calibration.decide.selection import Selection
 from calibration.decide.thresholds import AS_MUCH
 from calibration.decide.twins import told_by_the_clock, told_by_the_way, weight_first
 from calibration.decide.verdict import ROWS
-from calibration.decide.withdraw import as_told, of_calibrated, unnamed
+from calibration.decide.withdraw import as_told, of_calibrated, withdraw
 from calibration.finding import UNKNOWN, Finding, Parameter
 from calibration.inputs.run import Run
 from calibration.look.delay import Found, Make, Timed, timed
@@ -136,16 +135,8 @@ def _instead(steady: Timed, slow: Timed) -> bool:
     """Whether effects of one size for all files explain what an offset fitted anew in every file does, or it
     explains nothing."""
     one, other = steady.found[0], slow.found[0]
-    if one.held.after <= other.held.after:
-        return True
-    if not one.chosen or other.chosen:
-        return _better(steady, slow)
-    return one.held.taken > AS_MUCH * (one.held.before**2 - other.held.after**2)
-
-
-def _better(one: Timed, other: Timed) -> bool:
-    """Whether one has found something, and leaves less on held-out rows than the other."""
-    return bool(one.found[0].chosen) and one.found[0].held.after < other.found[0].held.after
+    much = one.held.taken > AS_MUCH * (one.held.before**2 - other.held.after**2)
+    return one.held.after <= other.held.after or (bool(one.chosen) and not other.chosen and much)
 
 
 def _sharper(first: Timed, view: View, made: Make, attempt: Callable[[], Timed]) -> Timed:
@@ -153,8 +144,10 @@ def _sharper(first: Timed, view: View, made: Make, attempt: Callable[[], Timed])
     shown = (view.standstill, view.direction)
     if first.found[0].chosen:
         fade(view, sharpest(view, made, first))
-    if view.standstill != shown[0] and _better(again := attempt(), first):
-        return again
+    if view.standstill != shown[0]:
+        s = (again := attempt()).found[0]
+        if s.chosen and s.held.after < first.found[0].held.after:
+            return again
     view.standstill, view.direction = shown
     return first
 
@@ -171,7 +164,7 @@ def _told(view: View, when: Timed, notes: list[str]) -> Balance:
         floor, source = float(np.hypot(floor, wind)), f"{source}, and the effort's through the wind-up"
     still = [] if np.any(np.abs(view.direction) > 0.5) else ["the position does not move"]
     notes = [*notes, *filter(None, [when.note]), f"floor of {channel}: {source}", *filtered(view), *still]
-    s, together, beyond = by_one_column(*beyond_names(s, scene), scene)
+    s, together, beyond = beyond_names(s, scene)
     named = [
         _of_the_zero(replace(f, share=x), s.effect(k)[problem.train], when.offsets, view)
         for k, x in enumerate(s.worth)
@@ -180,9 +173,12 @@ def _told(view: View, when: Timed, notes: list[str]) -> Balance:
     findings = as_told(named, scene)
     findings = of_calibrated(findings, scene, problem.by_name(s.after.beta)) + beyond
     left = left_over(s, scene, floor)
-    findings = settle(of_one_domain(findings, left), left, problem.channel) + quick_lines(view, problem)
+    findings = settle(of_one_domain(findings, left), left, problem.channel)
+    findings += quick_lines(view, problem.channel)
     tried = controls(s, order_beside(s, scene))
-    needs = [] if floor and together.held.after <= floor else close(together)
+    findings, withdrawn = withdraw(findings, tried)
+    needs = [f"{what} was close, but {why}" for _, what, why in withdrawn]
+    needs += [] if floor and together.held.after <= floor else close(together)
     return Balance(
         key=problem.channel,
         row=ROWS[problem.channel],
@@ -190,7 +186,7 @@ def _told(view: View, when: Timed, notes: list[str]) -> Balance:
         floor=floor,
         before=None if when.declared is None else when.declared.held.before,
         declared=when.declared,
-        findings=[*filter(None, [when.offsets, when.first]), *unnamed(findings, tried)],
+        findings=[*filter(None, [when.offsets, when.first]), *findings],
         numbers=calibrated(s),
         controls=tried,
         missing=left_over(together, scene, floor),

@@ -319,27 +319,13 @@ def test_two_functions_are_the_most_of_two_sensors() -> None:
     assert len(beyond(np.asarray(y), 0.3, False, effort=third)[2]) == 2
 
 
-def test_a_name_that_a_function_of_its_domain_displaces_is_refused() -> None:
-    speed = np.roll(X, 1234)
-    s = of(3.0 * np.sin(2 * np.pi * speed) + 0.3 * NOISE, floor=0.1)
-    one = fit_with(
-        s.problem, s.problem.base, replace(term("viscous_change", speed[:, None]), domain="velocity")
-    )
-    assert one is not None
-    s = s.keep([one])
-    alone, together, (found,) = beyond_names(s, scene())
-    assert found.domain == "velocity" and [c.name for c in together.candidates] == [UNKNOWN]
-    assert not alone.chosen and "a smooth function of velocity" in alone.refused[-1].why
-
-
 def test_a_quick_line_of_the_column_is_an_unknown_of_time(monkeypatch: pytest.MonkeyPatch) -> None:
-    line: Callable[[Any], Any] = lambda view: (12.5, 0.3)  # noqa: E731
+    line: Callable[[Any, float], Any] = lambda view, top: (12.5, 0.3)  # noqa: E731
     monkeypatch.setattr(residual, "pick_up", line)
-    p = problem(NOISE)
-    moving, still = SimpleNamespace(dynamic=True), SimpleNamespace(dynamic=False)
-    (found,) = quick_lines(moving, p)  # type: ignore[arg-type]
+    moving, still = SimpleNamespace(dynamic=True, unit="N m"), SimpleNamespace(dynamic=False)
+    (found,) = quick_lines(moving, "T")  # type: ignore[arg-type]
     assert (found.name, found.channel, found.domain, found.frequency) == (UNKNOWN, "T", "time", 12.5)
     assert found.parameters["amplitude"].value == 0.3 and found.note.startswith("12.5 Hz")
-    assert quick_lines(still, p) == []  # type: ignore[arg-type]
-    monkeypatch.setattr(residual, "pick_up", lambda view: None)
-    assert quick_lines(moving, p) == []  # type: ignore[arg-type]
+    assert quick_lines(still, "T") == []  # type: ignore[arg-type]
+    monkeypatch.setattr(residual, "pick_up", lambda view, top: None)
+    assert quick_lines(moving, "T") == []  # type: ignore[arg-type]
