@@ -29,7 +29,7 @@ def pick_up(view: View, top: float = TOP) -> tuple[float, float] | None:
     top: of a line, cycles per row.
     """
     full = view.columns.get(view.response.channel)
-    if full is None or view.sigma <= 0 or view.response.divide_by:
+    if full is None or view.sigma <= 0 or view.response.divide_by or not view.ok.any():
         return None
     y = full * view.response.gain
     quick = np.where(view.ok, y - smooth(y, view.segment, view.sigma), 0.0)
