@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from plant.focus import FocusPort
-from tests.plant.lvdt import FILTER_S, CarrierLvdt, ripple
 from plant.model import load
+from tests.plant.lvdt import FILTER_S, CarrierLvdt, ripple
 from tests.plant.stepper import Motor, MotorFocusPort, Stepper
 
 MS = 1_000_000
