@@ -17,20 +17,7 @@ FCY_HZ: Final = 30_000_000
 """dsPIC30F at its fastest. ASSUMPTION: the paper does not say."""
 PWM_HZ: Final = 20_000
 """ASSUMPTION (hardware.md 2.4): above hearing, and 3000 steps at 30 MIPS."""
-_PTPER_LIMIT: Final = 0x7FFF
-
-
-def steps_for(fcy_hz: int, pwm_hz: int) -> int:
-    """Duty steps of one period; raises ValueError when PTPER (15 bit) cannot hold it."""
-    ptper = fcy_hz // pwm_hz - 1
-    if not 0 < ptper <= _PTPER_LIMIT:
-        raise ValueError(
-            f"PWM of {pwm_hz} Hz at {fcy_hz} instructions/s needs PTPER = {ptper}, 1..{_PTPER_LIMIT} exist"
-        )
-    return 2 * (ptper + 1)
-
-
-STEPS: Final = steps_for(FCY_HZ, PWM_HZ)
+STEPS: Final = 2 * FCY_HZ // PWM_HZ
 """3000, of one period."""
 
 
@@ -38,10 +25,7 @@ class MotorPwm:
     """Two channels. drive: the switches, (t_ns, duty_a, duty_b), duties 0..1."""
 
     def __init__(
-        self,
-        drive: Callable[[int, float, float], None],
-        steps: int = STEPS,
-        pwm_hz: int = PWM_HZ,
+        self, drive: Callable[[int, float, float], None], steps: int = STEPS, pwm_hz: int = PWM_HZ
     ) -> None:
         self.drive = drive
         self.steps = steps
