@@ -61,7 +61,6 @@ lint: $(READY)
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	$(BIN)/python -m bus.protocol.page --check
 	$(BIN)/python -m docs.generate --check
 
 paper: $(READY)

@@ -7,8 +7,8 @@ is never used.
 `kernel` and `entry` are for functions that Python calls (cached on disk). `inner` is for those that only
 compiled code calls. They are compiled into their caller, so they cost nothing when it comes from the cache.
 `kernel` and `inner` work in the arrays they are given and allocate none. Numba then leaves out the atomic
-reference counts of every row and slice, which were 62 % of the plant's time. `entry` may allocate; it is
-also called `njit`. SCHMIDT_CACHE_DIR moves the cache.
+reference counts of every row and slice, which were 62 % of the plant's time. `entry` may allocate.
+SCHMIDT_CACHE_DIR moves the cache.
 
 Numba itself is loaded when the first function needs it. A network whose kernel was compiled beforehand
 (`ahead.py`) never does, which saves most of a second and half of the memory.
@@ -120,6 +120,3 @@ def _njit(function: F, **options: bool) -> F:
     compile_with: Any = numba.njit  # its stubs do not know all options
     compiled: F = compile_with(error_model="numpy", **options)(function)
     return compiled
-
-
-njit = entry

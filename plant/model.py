@@ -101,6 +101,16 @@ def dump(model: PlantModel, path: str | Path) -> None:
     Path(path).write_text(dumps(model), encoding="utf-8")
 
 
+def _inside(part: Any) -> dict[str, Any]:
+    """What a part holds, by the words of a path."""
+    if isinstance(part, EffectModel):
+        return dict(part.parameters)
+    if isinstance(part, tuple):
+        return {str(k): child for k, child in enumerate(part)}
+    fields = dataclasses.fields(part) if dataclasses.is_dataclass(part) else ()
+    return {field.name: getattr(part, field.name) for field in fields}
+
+
 def numbers(model: PlantModel) -> dict[str, Number]:
     """Return every number of the model by path, such as `axes.ra.friction.coulomb` or
     `axes.ra.effects.0.amplitude`.
@@ -109,17 +119,12 @@ def numbers(model: PlantModel) -> dict[str, Number]:
 
 
 def _walk(part: Any, path: str) -> Iterator[tuple[str, Number]]:
-    if isinstance(part, Number):
-        yield path, part
-    elif isinstance(part, EffectModel):
-        for word, value in part.parameters.items():
-            yield f"{path}.{word}", value
-    elif isinstance(part, tuple):
-        for k, child in enumerate(part):
-            yield from _walk(child, f"{path}.{k}")
-    elif dataclasses.is_dataclass(part):
-        for field in dataclasses.fields(part):
-            yield from _walk(getattr(part, field.name), f"{path}.{field.name}".lstrip("."))
+    for word, child in _inside(part).items():
+        here = f"{path}.{word}".lstrip(".")
+        if isinstance(child, Number):
+            yield here, child
+        else:
+            yield from _walk(child, here)
 
 
 def get(model: PlantModel, path: str) -> Number:
@@ -143,23 +148,18 @@ def with_value(model: PlantModel, path: str, value: float, source: str | None = 
 def _replaced(part: Any, words: list[str], path: str, value: float, source: str | None) -> Any:
     if not words and isinstance(part, Number):
         return Number(float(value), part.unit, part.source if source is None else source)
-    word = words[0] if words else ""
-    if isinstance(part, tuple) and word.isdigit() and int(word) < len(part):
-        k = int(word)
-        return (*part[:k], _replaced(part[k], words[1:], path, value, source), *part[k + 1 :])
-    if (
-        isinstance(part, EffectModel)
-        and len(words) == 1
-        and word in [p.name for p in REGISTRY[part.name].parameters]
-    ):
-        spec = REGISTRY[part.name].parameter(word)
-        old = part.parameters.get(word, Number(spec.default, spec.unit, spec.source))
-        new = Number(float(value), old.unit, old.source if source is None else source)
-        return dataclasses.replace(part, parameters={**part.parameters, word: new})
-    if dataclasses.is_dataclass(part) and not isinstance(part, Number) and hasattr(part, word):
-        child = _replaced(getattr(part, word), words[1:], path, value, source)
-        return dataclasses.replace(part, **{word: child})  # type: ignore[type-var]
-    raise ModelError(f"plant model: no number at '{path}'")
+    word, inside = (words or [""])[0], _inside(part)
+    if isinstance(part, EffectModel):
+        specs = {p.name: Number(p.default, p.unit, p.source) for p in REGISTRY[part.name].parameters}
+        inside = {**specs, **inside}
+    if word not in inside or isinstance(part, Number):
+        raise ModelError(f"plant model: no number at '{path}'")
+    child = _replaced(inside[word], words[1:], path, value, source)
+    if isinstance(part, EffectModel):
+        return dataclasses.replace(part, parameters={**part.parameters, word: child})
+    if isinstance(part, tuple):
+        return tuple((inside | {word: child}).values())
+    return dataclasses.replace(part, **{word: child})
 
 
 def with_effects(model: PlantModel, axis: str, effects: Sequence[EffectModel]) -> PlantModel:

@@ -21,10 +21,6 @@ LOADED_BY_FOLDER = ("plant.effects.", "calibration.names.", "boards.", "scenario
 """Found where they stand (plant/effects/__init__.py, calibration/names, a board's package, paper's rows)."""
 
 
-FOR_FOREIGN_FIRMWARE = {"CarrierLvdt"}
-"""Put in the place of a shipped part in Python, as FIDELITY.md says of the chips."""
-
-
 def files() -> Iterator[Path]:
     for room in ROOMS:
         yield from sorted((ROOT / room).rglob("*.py"))
@@ -55,7 +51,6 @@ def test_everything_that_is_defined_is_used() -> None:
         name: where
         for name, where in places.items()
         if used[name] <= len(where)
-        and name not in FOR_FOREIGN_FIRMWARE
         and not re.search(rf"\b{name}\b", PAGES)
         and not name.startswith(("pytest_", "__"))
         and not any("registers" in place for place in where)

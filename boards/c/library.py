@@ -30,7 +30,6 @@ _HERE: Final = Path(__file__).parent
 _FLAGS: Final = (
     "-std=gnu11", "-g", "-O2", "-fPIC", "-fvisibility=hidden", "-Werror=implicit-function-declaration",
 )  # fmt: skip
-_STRUCTS: Final = re.compile(r"^(?:enum|struct \w+) ?\{.*?^\};|^enum \{[^}]*\};", re.MULTILINE | re.DOTALL)
 _WRITABLE: Final = re.compile(r" [bBdDC] (\S+)$", re.MULTILINE)
 _WORST_S: Final = 60
 """A compiler that takes longer hangs. ASSUMPTION."""
@@ -124,27 +123,6 @@ class Memory:
         if self.digest != state["digest"]:
             raise FirmwareError(f"{self.file} has changed")
         self.bytes = state["bytes"]
-
-
-def members(file: Path, memory: bytes) -> dict[str, Any]:
-    """The members of `struct board` by name, from the bytes of it; for who looks for a difference."""
-    from cffi import FFI
-
-    text = run_tool([*compiler_for(file), "-E", "-P", f"-I{_HERE}", str(file)], file)
-    ffi = FFI()
-    ffi.cdef("\n".join(found for found in _STRUCTS.findall(text) if not found.startswith("struct firmware")))
-    board = ffi.new("struct board *")
-    ffi.buffer(board)[:] = memory
-    return {name: _plain(ffi, getattr(board, name)) for name, _ in ffi.typeof("struct board").fields}
-
-
-def _plain(ffi: Any, value: Any) -> Any:
-    if isinstance(value, int):
-        return value
-    kind = ffi.typeof(value)
-    if kind.kind == "array":
-        return [_plain(ffi, each) for each in value]
-    return {name: _plain(ffi, getattr(value, name)) for name, _ in kind.fields}
 
 
 @cache

@@ -79,23 +79,11 @@ class Parameter:
     write: Callable[[int], None]
 
 
-def _nothing() -> None:
-    """Nothing follows from a change."""
-
-
-def kept(
-    number: int,
-    name: str,
-    bounds: tuple[int, int],
-    owner: object,
-    attribute: str,
-    changed: Callable[[], None] = _nothing,
-) -> Parameter:
-    """A parameter whose value is an attribute of `owner`; `changed` is called after it is set."""
+def kept(number: int, name: str, bounds: tuple[int, int], owner: object, attribute: str) -> Parameter:
+    """A parameter whose value is an attribute of `owner`."""
 
     def write(value: int) -> None:
         setattr(owner, attribute, value)
-        changed()
 
     return Parameter(number, name, *bounds, lambda: int(getattr(owner, attribute)), write)
 

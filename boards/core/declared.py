@@ -13,14 +13,14 @@ from typing import Any, ClassVar, NamedTuple
 from mypy_extensions import mypyc_attr
 
 from boards.core.board import Board
-from boards.core.commands import Answer, Command, Handler, Parameter
+from boards.core.commands import Command, Handler, Parameter
 from boards.core.interrupts import Source
 from boards.core.packets import PacketLine
 from boards.core.periodic import PeriodicBoard
 from boards.core.place import Place
 from boards.silicon.can import FULL_MASK
 from boards.silicon.uart import Uart
-from bus.protocol import COMMAND_BASE, SUMMARY_BASE, pack_reply
+from bus.protocol import COMMAND_BASE, SUMMARY_BASE
 from bus.protocol.nodes import FrameCodec, Kind, arguments_of, messages_of
 
 _SECOND_NS = 1_000_000_000
@@ -83,25 +83,6 @@ def _unusable(values: Any) -> str:
     return ""
 
 
-class Own:
-    """A command's method as a board's author wrote it; its errors name the board."""
-
-    def __init__(self, board: "DeclaredBoard", method: Callable[..., Answer | None]) -> None:
-        self.board = board
-        self.method = method
-
-    def __call__(self, t_ns: int, *arguments: int) -> Answer | None:
-        """Call it; raises BoardError, also for an answer that no reply can hold."""
-        board = self.board
-        try:
-            found = self.method(t_ns, *arguments)
-            if found is not None:
-                pack_reply(board.device_type, 0, *found)
-        except (Exception, SystemExit) as error:
-            raise board_error(type(board), board.name, t_ns, error) from None
-        return found
-
-
 @mypyc_attr(allow_interpreted_subclasses=True)
 class DeclaredBoard(PeriodicBoard):
     """Subclasses name KIND, TABLE, PINS and write `measure(t_ns)`.
@@ -136,9 +117,7 @@ class DeclaredBoard(PeriodicBoard):
         )
         own_commands: dict[int, Handler] = {
             int(opcode): Command(
-                opcode,
-                Own(self, getattr(self, opcode.name.lower())),
-                [(each.low, each.high) for each in arguments],
+                opcode, getattr(self, opcode.name.lower()), [(each.low, each.high) for each in arguments]
             )
             for opcode, arguments in arguments_of(self.KIND).items()
         }
@@ -164,6 +143,12 @@ class DeclaredBoard(PeriodicBoard):
         self.packets.clear()
         for row in self.KIND.parameters:
             self.values[row.name].value = row.default
+
+    def _serve(self, t_ns: int) -> None:
+        try:  # a command's method is the author's, and so is its answer
+            super()._serve(t_ns)
+        except (Exception, SystemExit) as error:
+            raise board_error(type(self), self.name, t_ns, error) from None
 
     def routine(self, t_ns: int) -> None:
         """Timer interrupt, every shortest period."""

@@ -25,23 +25,21 @@ class Timer:
 
     oscillator: the board's crystal. period_ns: local time between fires. latency_ns: from fire to
         first instruction.
-    offset_ns: local time of the first fire modulo the period.
     """
 
-    def __init__(self, oscillator: Oscillator, period_ns: int, latency_ns: int, offset_ns: int = 0) -> None:
+    def __init__(self, oscillator: Oscillator, period_ns: int, latency_ns: int) -> None:
         if period_ns <= 0:
             raise ValueError(f"timer period is {period_ns} ns, must be positive")
         self.period_ns = period_ns
         self.latency_ns = latency_ns
         self._oscillator = oscillator
         self.times: list[int] = []
-        self.restart(0, offset_ns)
+        self.restart(0)
 
-    def restart(self, after_ns: int, offset_ns: int = 0) -> None:
+    def restart(self, after_ns: int) -> None:
         """Let the next fire be the first one after true time `after_ns`."""
         period = self.period_ns
-        local = self._oscillator.local_ns(after_ns) - offset_ns
-        self._local_ns = (local // period + 1) * period + offset_ns
+        self._local_ns = (self._oscillator.local_ns(after_ns) // period + 1) * period
         self._true_ns = self._oscillator.true_ns(self._local_ns)
         self.times.clear()
 

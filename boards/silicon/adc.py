@@ -11,6 +11,7 @@ SHUNT_OHM: Final = 0.1
 """Paper, section 3.2."""
 SENSE_GAIN: Final = 8.0
 """Op-amp between shunt and converter, ASSUMPTION (hardware.md 2.3): 6 A reads 4.8 V, 6.1 mA per count."""
+_COUNTS_PER_A: Final = SHUNT_OHM * SENSE_GAIN * _COUNTS_PER_V
 
 
 def convert(volts: float) -> int:
@@ -26,15 +27,12 @@ class CurrentAdc:
     pin: (t_ns, motor) -> A as the sense chain sees it. Motors 0 (A) and 1 (B).
     """
 
-    def __init__(
-        self, pin: Callable[[int, int], float], shunt_ohm: float = SHUNT_OHM, gain: float = SENSE_GAIN
-    ) -> None:
+    def __init__(self, pin: Callable[[int, int], float]) -> None:
         self.pin = pin
-        self._counts_per_a = shunt_ohm * gain * _COUNTS_PER_V
 
     def read(self, t_ns: int, motor: int) -> int:
         """The last conversion of the motor's channel, 0..1023."""
-        counts = int(self.pin(t_ns, motor) * self._counts_per_a)
+        counts = int(self.pin(t_ns, motor) * _COUNTS_PER_A)
         return counts if 0 <= counts <= FULL_SCALE else 0 if counts < 0 else FULL_SCALE
 
 

@@ -42,22 +42,6 @@ RECOVERY_NS: Final = 20_000
 """t_m, 10..30 us (hardware.md 3.1)."""
 
 
-def _share(low: int, count: int) -> list[int]:
-    """CRC share of bits `low`..`low + count - 1` for each of their values (the CRC is linear but for its
-    constant)."""
-    constant = crc5(0, _DATA_BITS)
-    single = [crc5(1 << (low + k), _DATA_BITS) ^ constant for k in range(count)]
-    table = [0]
-    for share in single:
-        table += [entry ^ share for entry in table]
-    return table
-
-
-_LOW: Final = [entry ^ crc5(0, _DATA_BITS) for entry in _share(0, 11)]
-_MIDDLE: Final = _share(11, 10)
-_HIGH: Final = _share(21, 10)
-
-
 Reading = tuple[int, bool, bool]
 """What the master makes of a frame: position, alarm, whether the CRC is right. A plain tuple, 200 times a
 second."""
@@ -75,7 +59,7 @@ class EndatEncoder:
         """The frame for a position latched at `latch_ns`: 31 data bits and the CRC above them."""
         flags = _ALARM_FLAGS if self.alarm else _HEALTHY_FLAGS
         data = (self.pin(latch_ns) & _POSITION_MASK) << 2 | flags
-        return data | (_LOW[data & 0x7FF] ^ _MIDDLE[data >> 11 & 0x3FF] ^ _HIGH[data >> 21]) << _DATA_BITS
+        return data | crc5(data, _DATA_BITS) << _DATA_BITS
 
 
 class EndatMaster:
@@ -102,5 +86,4 @@ class EndatMaster:
 def check(frame: int) -> Reading:
     """Take a received frame apart. F1 and F2 that agree mean an alarm too: one of them is wrong."""
     data = frame & 0x7FFFFFFF
-    good = frame >> _DATA_BITS == _LOW[data & 0x7FF] ^ _MIDDLE[data >> 11 & 0x3FF] ^ _HIGH[data >> 21]
-    return data >> 2, data & 3 != _HEALTHY_FLAGS, good
+    return data >> 2, data & 3 != _HEALTHY_FLAGS, frame >> _DATA_BITS == crc5(data, _DATA_BITS)

@@ -4,61 +4,20 @@ Edge aligned, duty = PDC / (2 (PTPER + 1)): bit 0 of PDC is half an instruction 
 30 MIPS and 20 kHz give PTPER = 1499 and 3000 steps. PDC = 0 is off; PDC above 2 PTPER + 1 is fully on.
 A new PDC is taken at the end of the running period.
 
-`write` is what firmware does once a control tick. `write_spread` adds the PWM interrupt that changes the
-registers every period (`Spreader`).
+`write` is what firmware does once a control tick. With `write_spread` the PWM interrupt changes the registers
+every period: it adds the fraction of a step to a 16-bit accumulator and loads the whole steps plus the carry.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Final
 
-ONE = 1 << 16
-_MASK = ONE - 1
-
-
-class Spreader:
-    """One channel of a duty finer than a PWM step: the fraction is spread over successive periods
-    (first-order delta-sigma).
-
-    Once a period the PWM interrupt adds the fraction to a 16-bit accumulator and loads the whole steps plus
-    the carry. Over n periods the registers sum up to n times the wanted value, to within one step.
-    `value_q16`: the wanted register value, PWM steps in Q16. `accumulator`: 16 bit.
-    """
-
-    def __init__(self) -> None:
-        self.value_q16 = 0
-        self.accumulator = 0
-
-    def registers(self, periods: int) -> Iterator[int]:
-        """The values the interrupt loads in the next `periods` PWM periods, one by one."""
-        whole, fraction = divmod(self.value_q16, ONE)
-        for _ in range(periods):
-            total = self.accumulator + fraction
-            self.accumulator = total & _MASK
-            yield whole + (total >> 16)
-
-    def skip(self, periods: int) -> None:
-        """Go on by `periods` without looking at the values: the same accumulator, in one multiplication."""
-        self.accumulator = (self.accumulator + periods * self.value_q16) & _MASK
-
+ONE: Final = 1 << 16
 
 FCY_HZ: Final = 30_000_000
 """dsPIC30F at its fastest. ASSUMPTION: the paper does not say."""
 PWM_HZ: Final = 20_000
 """ASSUMPTION (hardware.md 2.4): above hearing, and 3000 steps at 30 MIPS."""
-_PTPER_LIMIT: Final = 0x7FFF
-
-
-def steps_for(fcy_hz: int, pwm_hz: int) -> int:
-    """Duty steps of one period; raises ValueError when PTPER (15 bit) cannot hold it."""
-    ptper = fcy_hz // pwm_hz - 1
-    if not 0 < ptper <= _PTPER_LIMIT:
-        raise ValueError(
-            f"PWM of {pwm_hz} Hz at {fcy_hz} instructions/s needs PTPER = {ptper}, 1..{_PTPER_LIMIT} exist"
-        )
-    return 2 * (ptper + 1)
-
-
-STEPS: Final = steps_for(FCY_HZ, PWM_HZ)
+STEPS: Final = 2 * FCY_HZ // PWM_HZ
 """3000, of one period."""
 
 
@@ -66,22 +25,14 @@ class MotorPwm:
     """Two channels. drive: the switches, (t_ns, duty_a, duty_b), duties 0..1."""
 
     def __init__(
-        self,
-        drive: Callable[[int, float, float], None],
-        steps: int = STEPS,
-        pwm_hz: int = PWM_HZ,
-        phase_ns: int = 0,
+        self, drive: Callable[[int, float, float], None], steps: int = STEPS, pwm_hz: int = PWM_HZ
     ) -> None:
         self.drive = drive
         self.steps = steps
         self.period_ns = 1_000_000_000 // pwm_hz
         self.pdc_a = 0
         self.pdc_b = 0
-        self._phase_ns = phase_ns
-        self._loads_ns = 0
         self.spreading = False
-        self.spread_a = Spreader()
-        self.spread_b = Spreader()
 
     def write(self, t_ns: int, pdc_a: int, pdc_b: int) -> None:
         """Write both duty registers at `t_ns`: they count from the next period on. Negative values are a
@@ -95,7 +46,7 @@ class MotorPwm:
         period = self.period_ns
         # The period boundary at or after t_ns. Simplified: the time base runs on true time, not on the
         # board's crystal.
-        loads = t_ns + (self._phase_ns - t_ns) % period
+        loads = t_ns + -t_ns % period
         self.drive(
             loads,
             pdc_a / steps if pdc_a <= steps else 1.0,
@@ -105,19 +56,10 @@ class MotorPwm:
     def write_spread(self, t_ns: int, a_q16: int, b_q16: int) -> None:
         """Write both duties in PWM steps, Q16, at `t_ns`; the PWM interrupt spreads the fractions.
 
-        Simplified: the switches get the mean of the register sequence instead of 20 000 changes a second. The
-        chip keeps the accumulators of the sequence, so the sequence itself can be had at any time.
+        Simplified: the switches get the mean of the register sequence instead of 20 000 changes a second.
         """
-        period = self.period_ns
-        loads = t_ns + (self._phase_ns - t_ns) % period
-        gone = (loads - self._loads_ns) // period
-        self._loads_ns = loads
-        a, b = self.spread_a, self.spread_b
-        # skip(), written out: this runs 200 times a second
-        a.accumulator = (a.accumulator + gone * a.value_q16) & 0xFFFF
-        b.accumulator = (b.accumulator + gone * b.value_q16) & 0xFFFF
+        loads = t_ns + -t_ns % self.period_ns
         self.spreading = True
-        a.value_q16, b.value_q16 = a_q16, b_q16
         self.pdc_a, self.pdc_b = a_q16 >> 16, b_q16 >> 16
         full = self.steps * ONE
         self.drive(loads, a_q16 / full if a_q16 <= full else 1.0, b_q16 / full if b_q16 <= full else 1.0)

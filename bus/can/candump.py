@@ -34,13 +34,13 @@ class _Digest(Protocol):
     def hexdigest(self) -> str: ...
 
 
-def line(t_ns: int, frame: Frame, channel: str = "can0") -> str:
+def line(t_ns: int, frame: Frame) -> str:
     """One line without its end; the time is cut to microseconds as candump has it."""
     us = t_ns // 1000
     name = "%08X" if frame.extended else "%03X"
     body = f"R{len(frame.data)}" if frame.remote else frame.data.hex().upper()
-    parts = (us // _US_PER_S, us % _US_PER_S, channel, name % frame.identifier, body)
-    return "(%d.%06d) %s %s#%s" % parts  # noqa: UP031  mypyc calls format() for every f-string with a width
+    parts = (us // _US_PER_S, us % _US_PER_S, name % frame.identifier, body)
+    return "(%d.%06d) can0 %s#%s" % parts  # noqa: UP031  mypyc calls format() for every f-string with a width
 
 
 def parsed(text: str) -> tuple[int, Frame] | None:
@@ -55,7 +55,7 @@ def parsed(text: str) -> tuple[int, Frame] | None:
     return int(seconds) * 1_000_000_000 + int(micros) * 1000, frame
 
 
-def block(times_ns: list[int], frames: list[Frame], channel: str = "can0") -> bytes:
+def block(times_ns: list[int], frames: list[Frame]) -> bytes:
     """The lines of many frames. Eight-byte frames of standard identifiers, as nearly all of a night are, make
     lines of one length: those are filled in column by column."""
     if not frames:
@@ -65,17 +65,17 @@ def block(times_ns: list[int], frames: list[Frame], channel: str = "can0") -> by
     seconds = us // _US_PER_S  # np.divmod takes ten times as long
     width = len(str(seconds.max()))
     if not plain or len(str(seconds.min())) != width:
-        lines = [line(t_ns, frame, channel) + "\n" for t_ns, frame in zip(times_ns, frames, strict=True)]
+        lines = [line(t_ns, frame) + "\n" for t_ns, frame in zip(times_ns, frames, strict=True)]
         return "".join(lines).encode()
     identifiers = np.frombuffer(array("q", [frame.identifier for frame in frames]), np.int64)
     data = b"".join([frame.data for frame in frames]).hex().upper().encode()
-    return _columns(seconds, us - seconds * _US_PER_S, identifiers, data, channel)
+    return _columns(seconds, us - seconds * _US_PER_S, identifiers, data)
 
 
-def _columns(seconds: Whole, us: Whole, identifiers: Whole, data: bytes, channel: str) -> bytes:
+def _columns(seconds: Whole, us: Whole, identifiers: Whole, data: bytes) -> bytes:
     """Lines of one length. seconds: all of as many digits. us: within the second. data: 16 hexadecimal digits
     per frame."""
-    head, middle = f"({seconds[0]}.".encode(), f") {channel} ".encode()
+    head, middle = f"({seconds[0]}.".encode(), b") can0 "
     line = np.dtype(
         [("head", f"V{len(head)}"), ("ms", "V3"), ("us", "V3"), ("middle", f"V{len(middle)}"), ("id", "V3"),
          ("hash", "V1"), ("data", f"V{2 * _BYTES}"), ("end", "V1")]
@@ -95,35 +95,29 @@ def _columns(seconds: Whole, us: Whole, identifiers: Whole, data: bytes, channel
 
 
 class CandumpWriter:
-    """A tap for `Wire.tap` that writes a log and keeps its SHA-256.
+    """Writes a log and keeps its SHA-256; `take` is a tap for `Wire.tap`.
 
-    file: binary, or None to keep the digest only. epoch_s: added to every time (0: times since the start).
+    file: binary, or None to keep the digest only.
     Frames are written in batches of 1024: `flush()` (or `close()`) for the rest.
     """
 
-    def __init__(self, file: BinaryIO | None, channel: str = "can0", epoch_s: int = 0) -> None:
+    def __init__(self, file: BinaryIO | None) -> None:
         self.frames = 0
         self._file = file
-        self._channel = channel
-        self._epoch_ns = epoch_s * 1_000_000_000
         self._digest: _Digest = sha256()
         self._times_ns: list[int] = []
         self._waiting: list[Frame] = []
 
     def take(self, t_ns: int, frame: Frame, _sender: str = "") -> None:
         """Take one frame."""
-        self._times_ns.append(t_ns + self._epoch_ns)
+        self._times_ns.append(t_ns)
         waiting = self._waiting
         waiting.append(frame)
         if len(waiting) >= _BATCH:
             self._write()
 
-    def __call__(self, t_ns: int, frame: Frame, sender: str = "") -> None:
-        """The same, so that a writer itself can be a tap."""
-        self.take(t_ns, frame, sender)
-
     def _write(self) -> None:
-        text = block(self._times_ns, self._waiting, self._channel)
+        text = block(self._times_ns, self._waiting)
         self._digest.update(text)
         if self._file is not None:
             self._file.write(text)

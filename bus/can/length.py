@@ -1,27 +1,23 @@
 """Exact length of a frame on the wire from tables: what every frame costs, so it has to be quick.
 
-CRC-15 is linear, so the CRC of an eight-byte frame is the header's share XOR one table entry per
-16-bit word. Stuffing is a state machine of nine states (nothing yet; last bit and run of 1..4),
-tabulated for 16 bits at a time. An entry is one byte: new state in bits 0..3, inserted stuff bits in
-bits 4..6. Built once with numpy, 0.9 MB in all. `bits.py` is the reference it is tested against.
+CRC-15 is linear, so the CRC of an eight-byte frame is the header's share XOR one table entry per byte.
+Stuffing is a state machine of nine states (nothing yet; last bit and run of 1..4), tabulated for 16 bits at a
+time. An entry is one byte: new state in bits 0..3, inserted stuff bits in bits 4..6. Built once with numpy,
+0.9 MB in all. `bits.py` is the reference it is tested against.
 """
 
-from array import array
-from collections.abc import Callable
-from struct import Struct
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bus.can.bits import CRC15_POLYNOMIAL, TAIL_BITS, crc15, header_bits, number_bits
+from bus.can.bits import CRC15_POLYNOMIAL, TAIL_BITS, crc15, header_bits, stuff, stuffed_field
 from bus.can.frame import MAX_STANDARD, Frame, check
 
 _STATES: Final = 9
 _START: Final = 0
 """State 0 is never reached by a bit. State = 1 + 4 * last + (run - 1), run 1..4, gives 1..8. 0 is
 "nothing yet"."""
-_words: Final[Callable[[bytes], tuple[int, int, int, int]]] = Struct(">4H").unpack
 
 
 def _step(state: int, bit: int) -> tuple[int, int]:
@@ -45,32 +41,24 @@ def _machine(bits: int) -> NDArray[np.uint8]:
     return table.astype(np.uint8)
 
 
-def _shares() -> "list[array[int]]":
-    """CRC-15 share of each of the four words of an eight-byte frame: [word number][value]."""
-    words = np.arange(1 << 16)
-    crc = np.zeros(1 << 16, dtype=np.int64)
-    shares: list[array[int]] = []
-    for _ in range(4):
-        for shift in range(15, -1, -1):
-            bit = words >> shift & 1 if not shares else 0
+def _shares() -> list[list[int]]:
+    """CRC-15 share of each of the eight bytes of a frame: [byte number][value]."""
+    values = np.arange(1 << 8)
+    crc = np.zeros(1 << 8, dtype=np.int64)
+    shares: list[list[int]] = []
+    for _ in range(8):
+        for shift in range(7, -1, -1):
+            bit = values >> shift & 1 if not shares else 0
             top = (crc >> 14 ^ bit) & 1
             crc = crc << 1 & 0x7FFF ^ top * CRC15_POLYNOMIAL
-        shares.append(array("H", crc.astype(np.uint16).tobytes()))
+        shares.append(crc.tolist())
     return shares[::-1]
 
 
 _STUFF_WORD: Final = _machine(16).tobytes()
 _STUFF_CRC: Final = _machine(15).tobytes()
-_SHARES: Final = _shares()
-_CRC0: Final = _SHARES[0]
-_CRC1: Final = _SHARES[1]
-_CRC2: Final = _SHARES[2]
-_CRC3: Final = _SHARES[3]
 """Rows follow one another. The entry of state s and value v is at s << 16 | v, or s << 15 | v for the CRC."""
-
-
-_BYTES: Final = [[int(share[k << shift]) for k in range(256)] for share in _SHARES for shift in (8, 0)]
-"""CRC-15 share of each of the eight bytes."""
+_BYTES: Final = _shares()
 _BYTE0: Final = _BYTES[0]
 _BYTE1: Final = _BYTES[1]
 _BYTE2: Final = _BYTES[2]
@@ -79,17 +67,14 @@ _BYTE4: Final = _BYTES[4]
 _BYTE5: Final = _BYTES[5]
 _BYTE6: Final = _BYTES[6]
 _BYTE7: Final = _BYTES[7]
-_COMPILED: Final = not hasattr(_step, "__code__")
 
 _packed: Final = [0] * (MAX_STANDARD + 1)
-"""The same in one number: CRC share, state << 16, bits << 24; 0: not found yet."""
-_headers: Final[dict[int, tuple[int, int, int]]] = {}
-"""What `_header` found, per standard identifier."""
+"""What `_header` found, per standard identifier; 0: not found yet."""
 
 
-def _header(identifier: int) -> tuple[int, int, int]:
+def _header(identifier: int) -> int:
     """Of an eight-byte standard data frame's header: CRC share, stuffing state << 16, bits so far (tail and
-    CRC included)."""
+    CRC included) << 24."""
     frame = Frame(identifier, bytes(8))
     check(frame)
     bits = header_bits(frame)
@@ -97,8 +82,9 @@ def _header(identifier: int) -> tuple[int, int, int]:
     for bit in bits:
         state, more = _step(state, bit)
         inserted += more
-    found = crc15(bits + [0] * 64), state << 16, len(bits) + inserted + 64 + 15 + TAIL_BITS
-    _headers[identifier] = found
+    _packed[identifier] = found = (
+        len(bits) + inserted + 64 + 15 + TAIL_BITS << 24 | state << 16 | crc15(bits + [0] * 64)
+    )
     return found
 
 
@@ -108,32 +94,15 @@ def frame_bits(frame: Frame) -> int:
     Raises FrameError when CAN 2.0 cannot carry the frame.
     """
     if len(frame.data) != 8 or frame.extended or frame.remote:
-        return _any_bits(frame)
+        return len(stuff(stuffed_field(frame))) + TAIL_BITS  # bit by bit
     return plain_bits(frame.identifier, frame.data)
 
 
 def plain_bits(identifier: int, data: bytes) -> int:
     """The same for the frames that there are most of: standard identifier, eight bytes."""
-    if _COMPILED:
-        return typed_bits(identifier, data)
-    crc, state, bits = _headers.get(identifier) or _header(identifier)
-    a, b, c, d = _words(data)
-    table = _STUFF_WORD
-    crc ^= _CRC0[a] ^ _CRC1[b] ^ _CRC2[c] ^ _CRC3[d]
-    e = table[state | a]
-    f = table[(e & 15) << 16 | b]
-    g = table[(f & 15) << 16 | c]
-    h = table[(g & 15) << 16 | d]
-    i = _STUFF_CRC[(h & 15) << 15 | crc]
-    return bits + (e >> 4) + (f >> 4) + (g >> 4) + (h >> 4) + (i >> 4)
-
-
-def typed_bits(identifier: int, data: bytes) -> int:
-    """The same without an object in between: ten times quicker compiled, and slower when it is not."""
     head = _packed[identifier] if 0 <= identifier <= MAX_STANDARD else 0
     if not head:
-        share, state, bits = _header(identifier)
-        head = _packed[identifier] = bits << 24 | state | share
+        head = _header(identifier)
     p, q, r, s, t, u, v, w = (
         data[0], data[1], data[2], data[3], data[4], data[5], data[6], data[7],
     )  # fmt: skip
@@ -146,18 +115,3 @@ def typed_bits(identifier: int, data: bytes) -> int:
     h = table[(g & 15) << 16 | v << 8 | w]
     i = _STUFF_CRC[(h & 15) << 15 | crc]
     return (head >> 24) + (e >> 4) + (f >> 4) + (g >> 4) + (h >> 4) + (i >> 4)
-
-
-def _any_bits(frame: Frame) -> int:
-    """The same for any frame, bit by bit."""
-    check(frame)
-    bits = header_bits(frame)
-    if not frame.remote:
-        for byte in frame.data:
-            bits += number_bits(byte, 8)
-    bits += number_bits(crc15(bits), 15)
-    state, inserted = _START, 0
-    for bit in bits:
-        state, more = _step(state, bit)
-        inserted += more
-    return len(bits) + inserted + TAIL_BITS

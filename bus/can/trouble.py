@@ -167,12 +167,7 @@ class Trouble:
             if first is None and not everyone:
                 verdict = None  # that node is off, or not here
             if verdict is not None and first is not None and (first.state == "passive" or first.listen_only):
-                # Its flag is recessive, or there is none: it just misses the frame.
-                self.errors[verdict.kind] += 1
-                confinement.receive_failed([first])
-                self._excluded.append(first)
-                self._tell_failed([first], sof_ns)
-                self.report(sof_ns, verdict.kind, [first])
+                self._misses(first, verdict.kind, sof_ns)  # its flag is recessive, or there is none
                 verdict = None
             if verdict is not None:
                 self._fail(offer, verdict, sof_ns, first=first)
@@ -180,11 +175,7 @@ class Trouble:
             self._overload = first is not None and overloads(offer.frame, flip.bit)
         heard = Strangers(self._wire, offer, listeners).judge()
         for port in heard.deaf:
-            self.errors["stuff"] += 1
-            self._excluded.append(port)
-            confinement.receive_failed([port])
-            self._tell_failed([port], sof_ns)
-            self.report(sof_ns, "stuff", [port])
+            self._misses(port, "stuff", sof_ns)
         if heard.error_bit is not None:
             self._fail(offer, Verdict("bit", heard.error_bit), sof_ns, first=heard.first)
             return
@@ -198,6 +189,14 @@ class Trouble:
         wire._begin(offer, sof_ns)
         if self._overload:
             wire._free_ns += _OVERLOAD_BITS * wire.bit_ns
+
+    def _misses(self, port: Port, kind: ErrorKind, t_ns: int) -> None:
+        """A receiver sees an error and disturbs nobody: it just has not got the frame."""
+        self.errors[kind] += 1
+        confinement.receive_failed([port])
+        self._excluded.append(port)
+        self._tell_failed([port], t_ns)
+        self.report(t_ns, kind, [port])
 
     def _fail(
         self,

@@ -1,6 +1,6 @@
 """Sending and waiting on a python-can bus, on whatever clock that bus has."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from time import monotonic
 
 import can
@@ -53,24 +53,23 @@ class Link:
         """Frames that this machine has dropped so far, because it was busy."""
         return kernel_drops(self._bus)
 
-    def listen(self, seconds: float) -> list[can.Message]:
-        """Everything that arrives within `seconds`."""
-        heard = []
+    def _heard(self, seconds: float) -> Iterator[can.Message]:
+        """What arrives within `seconds`, as it comes, but for error frames."""
         end = self.now() + seconds
         while (left := end - self.now()) > 0:
             message = self._bus.recv(timeout=left)
             if message is not None and not message.is_error_frame:
-                heard.append(message)
-        return heard
+                yield message
+
+    def listen(self, seconds: float) -> list[can.Message]:
+        """Everything that arrives within `seconds`."""
+        return list(self._heard(seconds))
 
     def frame(self, identifier: int, within_s: float) -> can.Message | None:
         """The next data frame with this standard identifier; None when there is none in time."""
-        end = self.now() + within_s
-        while (left := end - self.now()) > 0:
-            message = self._bus.recv(timeout=left)
-            if message is None or message.is_error_frame or message.is_remote_frame:
-                continue
-            if message.arbitration_id == identifier and not message.is_extended_id:
+        for message in self._heard(within_s):
+            standard = not message.is_extended_id and not message.is_remote_frame
+            if standard and message.arbitration_id == identifier:
                 return message
         return None
 
@@ -90,11 +89,7 @@ class Link:
 
     def reply(self, device: int, within_s: float) -> Reply | None:
         """The next answer of `device`; None when there is none in time."""
-        end = self.now() + within_s
-        while (left := end - self.now()) > 0:
-            message = self._bus.recv(timeout=left)
-            if message is None or message.is_error_frame:
-                continue
+        for message in self._heard(within_s):
             if message.arbitration_id != REPLY_BASE + device or message.is_extended_id:
                 self._stray(message, REPLY_BASE + device)
             elif len(message.data) == FRAME_BYTES and not message.is_remote_frame:
@@ -144,14 +139,10 @@ class Link:
 
     def silent(self, device: int) -> bool:
         """Whether `device` says nothing of the kind for quiet_s and a bit."""
-        end = self.now() + 3 * self.settings.quiet_s
-        while (left := end - self.now()) > 0:
-            message = self._bus.recv(timeout=left)
-            if message is None or message.is_remote_frame:  # a bus may hand back the tester's own
-                continue
-            if message.arbitration_id == REPLY_BASE + device:
-                return False
-        return True
+        return not any(
+            message.arbitration_id == REPLY_BASE + device and not message.is_remote_frame  # may be one's own
+            for message in self._heard(3 * self.settings.quiet_s)
+        )
 
     def ask(self, device: int, opcode: int, *arguments: int) -> Answers:
         """Send a command of the protocol and collect its answers."""

@@ -103,7 +103,7 @@ class Door:
         self.frames_in += 1
 
     def _tell(self, message: can.Message) -> None:
-        """An error frame of the node's controller, for whoever listens outside."""
+        """An error frame, for whoever listens outside."""
         try:
             self._bus.send(message)
         except can.CanError:
@@ -114,10 +114,7 @@ class Door:
         now_s = monotonic()
         if now_s >= self._next_error_s:
             self._next_error_s = now_s + _ERROR_FRAME_S
-            try:
-                self._bus.send(overflow_message(self._queue.now_ns))
-            except can.CanError:
-                self.lost_out += 1
+            self._tell(overflow_message(self._queue.now_ns))
 
     def _is_echo(self, frame: Frame) -> bool:
         if self._echoes is None:

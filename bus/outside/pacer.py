@@ -3,7 +3,7 @@
 Are the 5 ms ticks on time? `Punctuality` holds the wall time of each against when it is due.
 """
 
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Callable
 from time import perf_counter, sleep
 
@@ -33,19 +33,16 @@ class Pacer:
     """Paces `queue` at `speed` (1: real time), which may be changed while it runs.
 
     A slice is run when the middle of it is due, so that nothing is more than half a slice early or late.
-    paused: simulated time stands still. lateness_s: how late the last slice ended. worst_lateness_s: the
-    worst so far. slips: times the schedule was dropped because it was more than a quarter of a second behind.
-    slipped_s: wall time given up that way (time was slowed by it).
+    paused: simulated time stands still. lateness_s: how late the last slice ended. slips: times the schedule
+    was dropped because it was more than a quarter of a second behind. slipped_s: wall time given up that way.
     """
 
-    def __init__(self, queue: EventQueue, speed: float = 1.0, slice_s: float = SLICE_S) -> None:
+    def __init__(self, queue: EventQueue, speed: float = 1.0) -> None:
         self.queue = queue
         self.lateness_s = 0.0
-        self.worst_lateness_s = 0.0
         self.slips = 0
         self.slipped_s = 0.0
         self._paused = False
-        self._slice_s = slice_s
         self._speed = checked_speed(speed)
         self._restart()
 
@@ -73,7 +70,7 @@ class Pacer:
     def _restart(self) -> None:
         """The schedule begins here and now."""
         self._start_ns, self._start_s = self.queue.now_ns, perf_counter()
-        self._slice_ns = max(1, round(self._slice_s * self._speed * _NS_PER_S))
+        self._slice_ns = max(1, round(SLICE_S * self._speed * _NS_PER_S))
 
     def due_s(self, t_ns: int) -> float:
         """When simulated time `t_ns` is due, on the clock of `perf_counter`."""
@@ -88,7 +85,7 @@ class Pacer:
             if each_slice is not None and each_slice():
                 return
             if self._paused:
-                sleep(self._slice_s)
+                sleep(SLICE_S)
                 continue
             target_ns = queue.now_ns + self._slice_ns
             target_ns = target_ns if until_ns is None else min(target_ns, until_ns)
@@ -100,7 +97,6 @@ class Pacer:
 
     def _account(self, late_s: float) -> None:
         self.lateness_s = max(0.0, late_s)
-        self.worst_lateness_s = max(self.worst_lateness_s, self.lateness_s)
         if late_s > _GIVE_UP_LAG_S:
             self.slips += 1
             self.slipped_s += late_s
@@ -111,24 +107,9 @@ TICK_NS = 5_000_000
 ON_TIME_S = 1e-3
 _KEPT = 1000
 """Late ticks that are remembered one by one."""
-_BIN_S, _FINE = 1e-5, 2000
-_COARSE_S, _COARSE = 1e-3, 1000
-"""Histogram of |lateness|: bins of 10 µs up to 20 ms, of 1 ms up to a second, and one for the rest."""
-
-
-def _bin(late_s: float) -> int:
-    """Where a lateness is counted."""
-    if late_s < _FINE * _BIN_S:
-        return int(late_s / _BIN_S)
-    return _FINE + min(int((late_s - _FINE * _BIN_S) / _COARSE_S), _COARSE)
-
-
-def _edge(index: int) -> float:
-    """Upper edge of a bin, s; inf for the last."""
-    if index < _FINE:
-        return (index + 1) * _BIN_S
-    above = index - _FINE + 1
-    return _FINE * _BIN_S + above * _COARSE_S if above <= _COARSE else float("inf")
+_BIN_S = 1e-5
+"""Bins in which lateness is counted, s; of what is later than a second, in the last one."""
+_LAST = 100_000
 
 
 class Punctuality:
@@ -143,7 +124,7 @@ class Punctuality:
         self.worst_s = 0.0
         self.ticks = 0
         self.late: deque[tuple[float, float]] = deque(maxlen=_KEPT)
-        self._late = [0] * (_FINE + _COARSE + 1)
+        self._bins: Counter[int] = Counter()
         self._pacer = pacer
         self.counting = True
         pacer.queue.at(pacer.queue.now_ns + TICK_NS, self._tick)
@@ -152,7 +133,7 @@ class Punctuality:
         if self.counting:
             due_s = self._pacer.due_s(t_ns)
             late_s = abs(perf_counter() - due_s)
-            self._late[_bin(late_s)] += 1
+            self._bins[min(int(late_s / _BIN_S), _LAST)] += 1
             self.ticks += 1
             if late_s > self.worst_s:
                 self.worst_s = late_s
@@ -163,24 +144,25 @@ class Punctuality:
     @property
     def on_time(self) -> float:
         """Share of the ticks within 1 ms of due; nan before the first."""
-        return sum(self._late[: round(ON_TIME_S / _BIN_S)]) / self.ticks if self.ticks else float("nan")
+        return self._below(round(ON_TIME_S / _BIN_S)) / self.ticks if self.ticks else float("nan")
 
     def quantile_s(self, share: float) -> float:
         """The lateness that `share` of the ticks stay below, to a bin, never more than the worst; nan before
         the first."""
         if not self.ticks:
             return float("nan")
-        need, seen = share * self.ticks, 0
-        for index, count in enumerate(self._late):
-            seen += count
-            if seen >= need:
-                return min(_edge(index), self.worst_s)
-        return self.worst_s
+        need = share * self.ticks
+        last = next(each for each in sorted(self._bins) if self._below(each + 1) >= need)
+        return self.worst_s if last == _LAST else min((last + 1) * _BIN_S, self.worst_s)
+
+    def _below(self, end: int) -> int:
+        """Ticks in the bins before `end`."""
+        return sum(count for each, count in self._bins.items() if each < end)
 
     def restart(self) -> None:
         """Count afresh from here."""
         self.worst_s, self.ticks = 0.0, 0
-        self._late = [0] * len(self._late)
+        self._bins.clear()
         self.late.clear()
 
     def text(self) -> str:

@@ -1,7 +1,5 @@
-"""The protocol page in docs, from schmidt.dbc: `python -m bus.protocol.page` writes it, `--check` only
-compares."""
+"""The protocol's page and `final.dbc`, from the DBC files; `python -m docs.generate` writes them."""
 
-import sys
 from collections.abc import Iterator
 from dataclasses import astuple
 from pathlib import Path
@@ -12,14 +10,13 @@ from bus.protocol.nodes import DEVICES, KINDS, documented
 from bus.protocol.report import PLACES
 from bus.protocol.serial import MEANINGS, SAMPLES, SYNC, fields, packet_bytes
 
-PAGE_PATH = Path(__file__).parents[2] / "docs" / "reference" / "protocol.md"
 DBC_PATH = Path(__file__).with_name("final.dbc")
-"""All boards in one file, for other people's tools; written beside the page."""
+"""All boards in one file, for other people's tools."""
 _TYPE = 0x7F
 """Bits of an identifier that are the device type."""
 _INTRO = """# The protocol
 
-Made by `python -m bus.protocol.page` from `bus/protocol/schmidt.dbc` and `bus/protocol/nodes/*.dbc`; change
+Made by `python -m docs.generate` from `bus/protocol/schmidt.dbc` and `bus/protocol/nodes/*.dbc`; change
 these, not this page. The files in `nodes` have the boards of the network `final`. `bus/protocol/final.dbc`,
 written with the page, has all boards.
 
@@ -74,6 +71,12 @@ A sync may come by chance among the samples: after a wrong CRC, search on one by
 
 def _everything() -> Any:
     return documented(DEVICES)
+
+
+def final_dbc() -> str:
+    """The text of `final.dbc`."""
+    text: str = _everything().as_dbc_string(sort_signals=None)
+    return text.replace("\r\n", "\n")
 
 
 def _family(name: str) -> str:
@@ -175,22 +178,3 @@ def page() -> str:
     for message, devices in shown.values():
         lines += _message(message, devices)
     return "\n".join(lines) + "\n"
-
-
-def main(arguments: list[str]) -> int:
-    """Write the page, or with `--check` return 1 when the one in docs is not what the DBC gives."""
-    if arguments == ["--check"]:  # final.dbc: by what it says, tests/bus/protocol/test_nodes.py
-        current = PAGE_PATH.exists() and PAGE_PATH.read_text(encoding="utf-8") == page()
-        if not current:
-            print(
-                f"{PAGE_PATH}: not what schmidt.dbc gives; run python -m bus.protocol.page", file=sys.stderr
-            )
-        return 0 if current else 1
-    PAGE_PATH.write_text(page(), encoding="utf-8")
-    text: str = _everything().as_dbc_string(sort_signals=None).replace("\r\n", "\n")
-    DBC_PATH.write_text(text, encoding="utf-8", newline="\n")
-    return 0
-
-
-if __name__ == "__main__":
-    raise SystemExit(main(sys.argv[1:]))

@@ -3,6 +3,7 @@
 import sys
 from pathlib import Path
 
+from bus.protocol import page as protocol
 from docs.generate import api, commands, effects, fields, language, parameters
 from scenarios.language.validate import SCHEMA_FILE
 
@@ -13,6 +14,7 @@ PAGES = {
     "effects.md": effects.page,
     "faults.md": language.faults_page,
     "parameters.md": parameters.page,
+    "protocol.md": protocol.page,
     "rig-fields.md": fields.rig_page,
     "scenario-fields.md": fields.scenario_page,
     "scenarios.md": language.scenarios_page,
@@ -39,6 +41,8 @@ def main(arguments: list[str]) -> int:
         return 1 if changed else 0
     for file, text in changed.items():
         file.write_text(text, encoding="utf-8")
+    # versions of cantools differ in the text: tests/bus/protocol/test_nodes.py compares what it says
+    protocol.DBC_PATH.write_text(protocol.final_dbc(), encoding="utf-8", newline="\n")
     return 0
 
 

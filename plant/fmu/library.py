@@ -15,7 +15,7 @@ from typing import Any, Final
 
 from plant.compiled import Floats, cache_folder
 from plant.kernels.advance import advance_axis
-from plant.kernels.prepare import Numbers, prepare
+from plant.world import Numbers, prepare
 
 _HERE: Final = Path(__file__).parent
 _FLAGS: Final = (

@@ -8,11 +8,10 @@ from typing import Final, NamedTuple
 from plant.effects import REGISTRY
 from plant.effects.signals import Hook
 from plant.kernels import layout as at
-from plant.kernels.prepare import Numbers
 from plant.parts import AxisModel, EffectModel, PlantModel
 from plant.plant import LATE
 from plant.units import UNITS, to_si
-from plant.world import PATHS, declared, numbers_of
+from plant.world import PATHS, Numbers, declared, numbers_of
 
 REALS: Final = (
     ("current_a", "A", "current of motor A at the PWM's falling edge"),

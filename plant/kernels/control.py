@@ -10,25 +10,12 @@ from math import floor
 from plant.compiled import Floats, inner, kernel
 from plant.kernels import layout as at
 from plant.kernels.advance import advance_axis
+from plant.kernels.readings import fill_truth
 
 # columns of a log row
 T, SETPOINT, EFFORT, POSITION, VELOCITY, ADC_A, ADC_B, TACH_A, TACH_B, AUX, LOG_SIZE = range(11)
-# columns of a truth row
-(
-    TRUE_ANGLE,
-    TRUE_RATE,
-    CURRENT_A,
-    CURRENT_B,
-    MOTOR_A,
-    MOTOR_B,
-    GEAR_A,
-    GEAR_B,
-    FRICTION,
-    BRISTLE,
-    DUTY_A,
-    DUTY_B,
-    TRUTH_SIZE,
-) = range(13)
+# columns of a truth row: those of the plant without the time, and these
+DUTY_A, DUTY_B, TRUTH_SIZE = range(at.TRUTH_SIZE - 1, at.TRUTH_SIZE + 2)
 # settings of a run: at DELAYS that of the effort, which is not read, and those of readings, s
 (
     KP,
@@ -61,26 +48,6 @@ def reading(w: Floats, place: int, delay: float) -> float:
     if place >= at.OUT_CURRENT_A:
         return w[row + place]
     return w[row + place] + w[row + place + 1] * max(0.0, back - step) * w[at.GRID] * 1e9
-
-
-@inner
-def truth_row(w: Floats, row: Floats) -> None:
-    """Fill one row of truth at the grid point."""
-    a = at.MOTORS
-    b = a + at.MOTOR_SIZE
-    half = 0.5 * w[at.GRID]
-    row[TRUE_ANGLE] = w[at.OUT + at.OUT_ANGLE]
-    row[TRUE_RATE] = w[at.RATE]
-    row[CURRENT_A] = w[a + at.M_CURRENT]
-    row[CURRENT_B] = w[b + at.M_CURRENT]
-    row[MOTOR_A] = w[a + at.M_ANGLE] - half * w[a + at.M_RATE]
-    row[MOTOR_B] = w[b + at.M_ANGLE] - half * w[b + at.M_RATE]
-    row[GEAR_A] = w[a + at.M_GEAR]
-    row[GEAR_B] = w[b + at.M_GEAR]
-    row[FRICTION] = w[at.FRICTION]
-    row[BRISTLE] = w[at.BRISTLE]
-    row[DUTY_A] = w[at.DUTY]
-    row[DUTY_B] = w[at.DUTY + 1]
 
 
 @inner
@@ -159,6 +126,8 @@ def control_loop(w: Floats, s: Floats, setpoint: Floats, effort: Floats, log: Fl
             last_a = now_a
             last_b = now_b
             row[AUX] = floor(reading(w, at.OUT_AUXILIARY, s[LATE_POSITION]))
-            truth_row(w, truth[tick // 2])
+            fill_truth(w, truth[tick // 2])
+            truth[tick // 2, DUTY_A] = w[at.DUTY]
+            truth[tick // 2, DUTY_B] = w[at.DUTY + 1]
         apply_effort(w, output, counter, s)
         advance_axis(w, tick_steps)

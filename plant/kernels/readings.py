@@ -59,21 +59,27 @@ def keep(w: Floats) -> None:
 
 
 @inner
-def record(w: Floats, t: float) -> None:
-    """Append one row of truth (columns: layout.TRUTH_COLUMNS) to the ring."""
+def fill_truth(w: Floats, row: Floats) -> None:
+    """Fill one row of truth at the grid point (columns: layout.TRUTH_COLUMNS behind the time)."""
     half = 0.5 * w[at.GRID]
-    row = at.TRUTH + (int(w[at.RECORDED]) % at.TRUTH_ROWS) * at.TRUTH_SIZE
     a = at.MOTORS
     b = at.MOTORS + at.MOTOR_SIZE
+    row[0] = w[at.ANGLE] - half * w[at.RATE]
+    row[1] = w[at.RATE]
+    row[2] = w[a + at.M_CURRENT]
+    row[3] = w[b + at.M_CURRENT]
+    row[4] = w[a + at.M_ANGLE] - half * w[a + at.M_RATE]
+    row[5] = w[b + at.M_ANGLE] - half * w[b + at.M_RATE]
+    row[6] = w[a + at.M_GEAR]
+    row[7] = w[b + at.M_GEAR]
+    row[8] = w[at.FRICTION]
+    row[9] = w[at.BRISTLE]
+
+
+@inner
+def record(w: Floats, t: float) -> None:
+    """Append one row of truth to the ring."""
+    row = at.TRUTH + (int(w[at.RECORDED]) % at.TRUTH_ROWS) * at.TRUTH_SIZE
     w[row] = t
-    w[row + 1] = w[at.ANGLE] - half * w[at.RATE]
-    w[row + 2] = w[at.RATE]
-    w[row + 3] = w[a + at.M_CURRENT]
-    w[row + 4] = w[b + at.M_CURRENT]
-    w[row + 5] = w[a + at.M_ANGLE] - half * w[a + at.M_RATE]
-    w[row + 6] = w[b + at.M_ANGLE] - half * w[b + at.M_RATE]
-    w[row + 7] = w[a + at.M_GEAR]
-    w[row + 8] = w[b + at.M_GEAR]
-    w[row + 9] = w[at.FRICTION]
-    w[row + 10] = w[at.BRISTLE]
+    fill_truth(w, w[row + 1 : row + at.TRUTH_SIZE])
     w[at.RECORDED] += 1.0

@@ -17,7 +17,7 @@ from boards.gateway.firmware import HOLD_NS
 from boards.motor_velocity import firmware as motor
 from boards.position import firmware as position
 from boards.silicon.endat import EndatEncoder, EndatMaster
-from boards.silicon.pwm import FCY_HZ, PWM_HZ, steps_for
+from boards.silicon.pwm import FCY_HZ, PWM_HZ, STEPS
 from boards.silicon.uart import BAUD, Uart
 from bus.protocol import Device
 from bus.protocol.serial import packet_bytes
@@ -87,8 +87,7 @@ FIGURES = {
     "| P11 | focus | encoder": f"{FOCUS.encoder.si:g} counts",
     "| P12 | LVDT |": f"0–{FOCUS.lvdt_full_scale.si:g} V over ±5 mm, {FOCUS.lvdt_gain_error.si:.0%} gain, "
     f"{FOCUS.lvdt_offset.si * 1e3:g} mV offset, {FOCUS.lvdt_nonlinearity.si:.1%} bend",
-    "| B1 | axis: PWM |": f"{steps_for(FCY_HZ, PWM_HZ)} steps at {PWM_HZ // 1000} kHz "
-    f"and {FCY_HZ // 10**6} MIPS",
+    "| B1 | axis: PWM |": f"{STEPS} steps at {PWM_HZ // 1000} kHz and {FCY_HZ // 10**6} MIPS",
     "| B5 | focus: stepper |": f"ramp {FocusConfig().start_rate}–{FocusConfig().top_rate} half steps/s",
     "| B9 | all: crystal |": f"±{CRYSTAL_PPM:g} ppm, ±{CRYSTAL_DRIFT_PPM_PER_HOUR:g} ppm/h",
     "| P1 | site |": f"height {NAINITAL.height_m:g} m, {NAINITAL.temperature_c:g} °C, "

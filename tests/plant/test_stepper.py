@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from plant.focus import FocusPort
-from plant.lvdt import FILTER_S, CarrierLvdt, ripple
 from plant.model import load
-from plant.stepper import Motor, MotorFocusPort, Stepper
+from tests.plant.lvdt import FILTER_S, CarrierLvdt, ripple
+from tests.plant.stepper import Motor, MotorFocusPort, Stepper
 
 MS = 1_000_000
 MODEL = load().focus

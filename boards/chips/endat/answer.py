@@ -13,7 +13,7 @@ from boards.chips.endat.registers import (
     Reply,
     words,
 )
-from boards.silicon.endat import crc5
+from boards.silicon.endat import POSITION_BITS, crc5
 
 _STATUS = int(Area.STATUS)
 _OPERATING_START = int(Area.MANUFACTURER_0)
@@ -22,8 +22,8 @@ _OPERATING_START = int(Area.MANUFACTURER_0)
 class Memory:
     """area: selected by the last MRS (after a reset the first, ASSUMPTION)."""
 
-    def __init__(self, position_bits: int) -> None:
-        self._words = words(position_bits)
+    def __init__(self) -> None:
+        self._words = words()
         self.area = _OPERATING_START
 
     def power_up(self, alarms: int) -> None:
@@ -91,14 +91,13 @@ def crc_bits(bits: list[int]) -> list[int]:
 
 
 class Answers:
-    """Memory, additional information and test values of an encoder of `position_bits`.
+    """Memory, additional information and test values of an encoder.
 
     temperature: 0.1 K, content 4Ch. silent_until_ns: no answer before (after a reset).
     """
 
-    def __init__(self, position_bits: int) -> None:
-        self._position_bits = position_bits
-        self.memory = Memory(position_bits)
+    def __init__(self) -> None:
+        self.memory = Memory()
         self.temperature = 2932
         self.test_values = 0
         self.silent_until_ns = 0
@@ -118,7 +117,7 @@ class Answers:
             values = [int(alarm), *bits_of(self.test_values, 40)]
             return values + crc_bits(values)
         flags = [int(alarm)] if mode.reply is Reply.POSITION else [int(alarm), int(not alarm)]
-        data = flags + [position >> k & 1 for k in range(self._position_bits)]
+        data = flags + [position >> k & 1 for k in range(POSITION_BITS)]
         out = data + crc_bits(data)
         if mode.reply is Reply.POSITION_22:
             for info in (self._info_2, self._info_1):
@@ -140,7 +139,7 @@ class Answers:
     def _content(self, info: int, position: int) -> int:
         """16 bits of what `info` selects; 0 for what this encoder has not got."""
         address, value = self._parameter
-        wrapped = position & (1 << self._position_bits) - 1
+        wrapped = position & (1 << POSITION_BITS) - 1
         return {
             Info.POSITION2_LOW: wrapped & 0xFFFF,
             Info.POSITION2_MIDDLE: wrapped >> 16 & 0xFFFF,

@@ -6,7 +6,7 @@ from enum import IntEnum
 from boards.chips.endat import registers as at
 from boards.chips.endat.answer import Answers, value_of
 from boards.chips.endat.registers import MODES, Mode, Reply
-from boards.silicon.endat import CALCULATION_NS, POSITION_BITS, RECOVERY_NS
+from boards.silicon.endat import CALCULATION_NS, RECOVERY_NS
 
 
 class Phase(IntEnum):
@@ -21,7 +21,7 @@ class Phase(IntEnum):
 
 
 class ClockedEncoder:
-    """A rotary encoder of `position_bits` on pin: (t_ns) -> position.
+    """A rotary encoder on pin: (t_ns) -> position.
 
     The clock idles HIGH; its first falling edge latches the position. Mode bits are taken at rising edges,
     data change at rising edges and are taken by the master at the falling one that follows. A command that
@@ -29,9 +29,9 @@ class ClockedEncoder:
     published).
     """
 
-    def __init__(self, pin: Callable[[int], int], position_bits: int = POSITION_BITS) -> None:
+    def __init__(self, pin: Callable[[int], int]) -> None:
         self.pin = pin
-        self.answers = Answers(position_bits)
+        self.answers = Answers()
         self.output: int | None = 0
         self._clock = 1
         self._edge_ns = -(1 << 60)

@@ -34,16 +34,9 @@ class ClockedMaster:
     nothing. Without delay compensation the delay must stay below half a clock.
     """
 
-    def __init__(
-        self,
-        encoder: ClockedEncoder,
-        clock_hz: int = CLOCK_HZ,
-        delay_ns: int = 0,
-        position_bits: int = POSITION_BITS,
-    ) -> None:
+    def __init__(self, encoder: ClockedEncoder, clock_hz: int = CLOCK_HZ, delay_ns: int = 0) -> None:
         self.encoder = encoder
         self.line: Callable[[int, int], int] | None = None
-        self.position_bits = position_bits
         self._half_ns = _NS_PER_S // (2 * clock_hz)
         self._delay_ns = delay_ns
         self._t_ns = 0
@@ -108,7 +101,7 @@ class ClockedMaster:
         Raises EndatError on a missing start bit or a wrong CRC.
         """
         flags = 1 if MODES[code].reply is Reply.POSITION else 2
-        head = flags + self.position_bits
+        head = flags + POSITION_BITS
         bits = self.exchange(t_ns, code, None, head + CRC_BITS + infos * INFO_BITS, supplement)
         data = checked(bits[: head + CRC_BITS])
         alarm = data[0] == 1 if flags == 1 else data[:2] != [0, 1]

@@ -3,6 +3,8 @@
 from enum import IntEnum, IntFlag
 from typing import NamedTuple
 
+from boards.silicon.endat import POSITION_BITS
+
 
 class Reply(IntEnum):
     """What the encoder answers with."""
@@ -117,18 +119,17 @@ SHORT_RECOVERY_NS = 2_500
 """t_m within 1.25..3.75 us, when word 3 of Area.STATUS selects it (2.2, f_C > 1 MHz)."""
 
 
-def words(position_bits: int) -> dict[tuple[int, int], int]:
+def words() -> dict[tuple[int, int], int]:
     """Memory as delivered: (area, word) -> 16 bits. Words not named are 0. A rotary single-turn encoder.
 
     Identity and serial number are made up (ASSUMPTION).
     """
-    steps = 1 << position_bits
     return {
-        (Area.MANUFACTURER_0, 13): position_bits,
+        (Area.MANUFACTURER_0, 13): POSITION_BITS,
         (Area.MANUFACTURER_0, 14): 0x8000,
         (Area.MANUFACTURER_1, 1): 0,
-        (Area.MANUFACTURER_1, 4): steps & 0xFFFF,
-        (Area.MANUFACTURER_1, 5): steps >> 16,
+        (Area.MANUFACTURER_1, 4): (1 << POSITION_BITS) & 0xFFFF,
+        (Area.MANUFACTURER_1, 5): (1 << POSITION_BITS) >> 16,
         (Area.MANUFACTURER_1, 8): 0x0829,
         (Area.MANUFACTURER_1, 11): 0x0001,
         (Area.MANUFACTURER_2, 5): 0x0001,

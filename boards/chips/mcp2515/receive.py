@@ -1,7 +1,5 @@
 """The receive buffers: masks and filters, roll-over, overflow (DS20001801 section 4, figure 4-3)."""
 
-from typing import NamedTuple
-
 from boards.chips.mcp2515.message import (
     BUFFER_BYTES,
     DATA,
@@ -35,42 +33,59 @@ USE_FILTERS, STANDARD_ONLY, EXTENDED_ONLY, ANY = range(4)
 reserved."""
 
 
-class Hit(NamedTuple):
-    """A message is for a buffer: which one, and the number of the filter that took it (under RXM = 11 the
-    buffer's first, ASSUMPTION)."""
-
-    buffer: int
-    filter: int
+_FULL = (int(Interrupt.RX0), int(Interrupt.RX1))
+_ROLLED = 6
+"""FILHIT of a message that rolled over: 6 and 7 for filters 0 and 1."""
 
 
-class Acceptance:
-    """Masks and filters as their registers have them: 4 bytes each (SIDH, SIDL, EID8, EID0)."""
+class Receiver:
+    """Puts messages into the two buffers of `memory`; `full` has bits RX0IF and RX1IF of CANINTF."""
 
-    def __init__(self) -> None:
-        self.masks = [bytes(4), bytes(4)]
-        self.filters = [bytes(4)] * 6
+    def __init__(self, memory: bytearray) -> None:
+        self._memory = memory
+        self.refilter()
 
-    def hit(self, image: bytes, modes: tuple[int, int]) -> Hit | None:
-        """Where the message of 13 bytes `image` goes first, given RXM of both buffers; None: nowhere."""
-        for buffer, mode in enumerate(modes):
-            number = self._match(buffer, mode, image)
-            if number is not None:
-                return Hit(buffer, number)
-        return None
+    def refilter(self) -> None:
+        """Masks or filters were written, 4 bytes each (SIDH, SIDL, EID8, EID0)."""
+        memory = self._memory
+        self._masks = [bytes(memory[address : address + 4]) for address in MASK_ADDRESSES]
+        self._filters = [bytes(memory[address : address + 4]) for address in FILTER_ADDRESSES]
 
-    def _match(self, buffer: int, mode: int, image: bytes) -> int | None:
+    def take(self, frame: Frame, full: int) -> tuple[int, int]:
+        """A good frame has arrived: (interrupt flags, overflow flags) it sets, (0, 0) when nobody
+        wants it."""
+        image = image_of(frame)
+        hit = self._hit(image)
+        if hit is None:
+            return 0, 0
+        buffer, code = hit
+        if full & _FULL[buffer]:
+            if buffer or not self._memory[RXBCTRL[0]] & BUKT:
+                return 0, (RX0OVR, RX1OVR)[buffer]
+            buffer, code = 1, _ROLLED + code
+            if full & _FULL[1]:
+                return 0, RX1OVR
+        self._store(buffer, code, image)
+        return _FULL[buffer], 0
+
+    def _hit(self, image: bytes) -> tuple[int, int] | None:
+        """The buffer that a message of 13 bytes goes to first, and the number of the filter that takes it.
+
+        Under RXM = 11 that is the buffer's first filter (ASSUMPTION). None: nobody wants it.
+        """
         extended = bool(image[SIDL] & EXIDE)
-        if mode == ANY:
-            return FILTERS_OF[buffer][0]
-        if (mode == STANDARD_ONLY and extended) or (mode == EXTENDED_ONLY and not extended):
-            return None
-        for number in FILTERS_OF[buffer]:
-            if self._takes(number, mode, image, extended):
-                return number
+        for buffer, address in enumerate(RXBCTRL):
+            mode = self._memory[address] >> 5 & 3
+            if mode == ANY:
+                return buffer, FILTERS_OF[buffer][0]
+            if mode != (STANDARD_ONLY if extended else EXTENDED_ONLY):
+                for number in FILTERS_OF[buffer]:
+                    if self._takes(number, mode, image, extended):
+                        return buffer, number
         return None
 
     def _takes(self, number: int, mode: int, image: bytes, extended: bool) -> bool:
-        code, mask = self.filters[number], self.masks[_MASK_OF[number]]
+        code, mask = self._filters[number], self._masks[_MASK_OF[number]]
         if bool(code[SIDL] & EXIDE) != extended:
             return False
         if (image[SIDH] ^ code[SIDH]) & mask[SIDH] or (image[SIDL] ^ code[SIDL]) & mask[SIDL] & 0xE0:
@@ -86,52 +101,12 @@ class Acceptance:
             return True
         return not ((high ^ code[EID8]) & mask[EID8] or (low ^ code[EID0]) & mask[EID0])
 
-
-_FULL = (int(Interrupt.RX0), int(Interrupt.RX1))
-_ROLLED = 6
-"""FILHIT of a message that rolled over: 6 and 7 for filters 0 and 1."""
-
-
-class Receiver:
-    """Puts messages into the two buffers of `memory`; `full` has bits RX0IF and RX1IF of CANINTF."""
-
-    def __init__(self, memory: bytearray) -> None:
-        self._memory = memory
-        self.acceptance = Acceptance()
-
-    def refilter(self) -> None:
-        """Masks or filters were written."""
-        memory = self._memory
-        self.acceptance.masks = [bytes(memory[address : address + 4]) for address in MASK_ADDRESSES]
-        self.acceptance.filters = [bytes(memory[address : address + 4]) for address in FILTER_ADDRESSES]
-
-    def take(self, frame: Frame, full: int) -> tuple[int, int]:
-        """A good frame has arrived: (interrupt flags, overflow flags) it sets, (0, 0) when nobody
-        wants it."""
-        image = image_of(frame)
-        control = self._memory[RXBCTRL[0]]
-        hit = self.acceptance.hit(image, (control >> 5 & 3, self._memory[RXBCTRL[1]] >> 5 & 3))
-        if hit is None:
-            return 0, 0
-        buffer, code = hit
-        if full & _FULL[buffer]:
-            if buffer or not control & BUKT:
-                return 0, (RX0OVR, RX1OVR)[buffer]
-            buffer, code = 1, _ROLLED + code
-            if full & _FULL[1]:
-                return 0, RX1OVR
-        self._store(buffer, code, image)
-        return _FULL[buffer], 0
-
     def _store(self, buffer: int, code: int, image: bytes) -> None:
         memory = self._memory
         address = RXBCTRL[buffer]
         memory[address + 1 : address + 1 + BUFFER_BYTES] = image
         remote = RXRTR if image[DLC] & RTR else 0
-        if buffer:
-            memory[address] = memory[address] & 0x60 | remote | code
-        else:
-            memory[address] = memory[address] & 0x66 | remote | code
+        memory[address] = memory[address] & (0x60 if buffer else 0x66) | remote | code
 
     def status(self, full: int) -> int:
         """Answer to RX STATUS (DS20001801 figure 12-9); buffer 0 goes first."""

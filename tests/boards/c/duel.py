@@ -11,7 +11,6 @@ import click
 
 from boards.axis.commands import RATE_LIMIT
 from boards.c.board import FirmwareBoard
-from boards.c.library import members
 from bus.can import Frame
 from bus.outside.node import OutsideNode
 from bus.protocol import COMMAND_BASE, HEARTBEAT_BASE, MEASUREMENT_BASE, Device, Opcode, pack_command
@@ -24,6 +23,7 @@ from scenarios.lab.networks import NetworkConfig, NodeConfig
 from scenarios.lab.prepare import chosen
 from scenarios.language.configure import parameters_of
 from scenarios.native import compiled
+from tests.boards.c.members import members
 from tests.scenarios.lab.faults.lab import EXAMPLES
 
 AXIS_C = Path(__file__).parents[3] / "boards" / "axis" / "axis.c"

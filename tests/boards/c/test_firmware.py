@@ -11,7 +11,7 @@ from boards.axis.commands import RATE_LIMIT
 from boards.c import library
 from boards.c.board import FirmwareBoard
 from boards.c.isolated import IsolatedMemory
-from boards.c.library import FirmwareError, Memory, load, members
+from boards.c.library import FirmwareError, Memory, load
 from boards.core.declared import BoardError
 from bus.can import Frame
 from bus.protocol import COMMAND_BASE, AxisMode, AxisParameter, Device, Opcode, pack_command
@@ -27,6 +27,7 @@ from scenarios.native import compiled
 from scenarios.run.run import Way, run
 from tests.boards.c import mutants
 from tests.boards.c.duel import AXIS_C, Duel
+from tests.boards.c.members import members
 
 HEADER = AXIS_C.parents[1] / "c" / "firmware.h"
 NIGHT = Path("observing-night")

@@ -3,10 +3,10 @@
 import pytest
 
 from bus.protocol import FocusFlag, Health, Opcode, Result, unpack_focus
-from plant.lvdt import CarrierLvdt
-from plant.stepper import MOTOR, MotorFocusPort
 from tests.boards.focus import test_board
 from tests.boards.focus.test_board import Bench
+from tests.plant.lvdt import CarrierLvdt
+from tests.plant.stepper import MOTOR, MotorFocusPort
 
 
 def bench(monkeypatch: pytest.MonkeyPatch, start: float) -> Bench:

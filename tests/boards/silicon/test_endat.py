@@ -33,12 +33,6 @@ def test_crc_of_the_published_endat_2_1_vector() -> None:
 
 
 @given(positions)
-def test_the_tables_agree_with_the_shift_register(position: int) -> None:
-    frame = EndatEncoder(lambda _t: position).transfer(0)
-    assert frame >> 31 == crc5(frame & (1 << 31) - 1, 31)
-
-
-@given(positions)
 def test_B3_a_frame_arrives_as_it_was_sent(position: int) -> None:
     encoder = EndatEncoder(lambda _t: position)
     master = EndatMaster(encoder)

@@ -29,7 +29,6 @@ def test_lateness_is_reported_and_a_long_pause_is_not_made_up_for() -> None:
     start = perf_counter()
     pacer.run(until_ns=20_000_000)
     assert pacer.slips == 1
-    assert pacer.worst_lateness_s >= 1.0
     assert pacer.slipped_s >= 1.0
     assert perf_counter() - start >= 1.1 + 0.014
 

@@ -9,7 +9,7 @@ from plant.compiled import Floats
 from plant.kernels import control
 from plant.kernels import layout as at
 from plant.kernels.advance import advance_axis
-from plant.kernels.control import apply_effort, control_loop, counter_steps, reading, truth_row
+from plant.kernels.control import apply_effort, control_loop, counter_steps, reading
 from plant.loop import LOG_COLUMNS, TRUTH_COLUMNS
 
 H = 1e-3
@@ -35,22 +35,6 @@ def test_a_reading_of_before_the_start_is_the_first() -> None:
     w[at.GRID], w[at.STEP] = H, 1.0
     w[at.DELAYS + at.OUT_TACH_A], w[at.DELAYS + at.OUT_TACH_A + 1] = 9.0, 1.0
     assert reading(w, at.OUT_TACH_A, 3.5 * H) == 9.0
-
-
-def test_a_row_of_truth_is_of_the_grid_point() -> None:
-    w, row = np.zeros(at.WIDTH), np.zeros(control.TRUTH_SIZE)
-    w[at.GRID], w[at.RATE], w[at.OUT + at.OUT_ANGLE] = 2 * H, 0.5, 0.25
-    w[at.FRICTION], w[at.BRISTLE] = 40.0, 5e-5
-    w[at.MOTORS : at.MOTORS + 2 * at.MOTOR_SIZE] = (3.0, 20.0, 0.0, 2.0, 11.0, -4.0, 30.0, 0.0, 1.0, -12.0)
-    w[at.DUTY], w[at.DUTY + 1] = 0.75, 0.125
-    truth_row(w, row)
-    assert dict(zip(TRUTH_COLUMNS, row, strict=True)) == pytest.approx(
-        {
-            "angle": 0.25, "rate": 0.5, "current_a": 2.0, "current_b": 1.0, "motor_angle_a": 20.0 - 3.0 * H,
-            "motor_angle_b": 30.0 + 4.0 * H, "gear_torque_a": 11.0, "gear_torque_b": -12.0, "friction": 40.0,
-            "bristle": 5e-5, "duty_a": 0.75, "duty_b": 0.125,
-        }
-    )  # fmt: skip
 
 
 @pytest.mark.parametrize(("size", "split", "register", "expected"), [
@@ -126,7 +110,7 @@ def test_a_closed_loop_by_hand() -> None:
     assert log["position"].tolist() == [0.0, 60.0, 120.0] and log["aux"].tolist() == [1.0, 101.0, 201.0]
     assert log["tach_a"].tolist() == [0.0, 30.0, 30.0] and log["tach_b"].tolist() == [0.0, -10.0, -10.0]
     assert log["adc_a"].tolist() == [123.0] * 3 and log["adc_b"].tolist() == [1023.0] * 3
-    assert truth[:, control.TRUE_RATE] == pytest.approx([1.0] * 3)
+    assert truth[:, TRUTH_COLUMNS.index("rate")] == pytest.approx([1.0] * 3)
     assert truth[:, control.DUTY_A].tolist() == [0.0, 0.04, 0.05]  # of the tick before
     assert truth[:, control.DUTY_B].tolist() == [0.0, 0.02, 0.02]
     assert w[at.DUTY : at.DUTY + 2].tolist() == [0.06, 0.03] and w[at.STEP] == 30.0

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from boards.silicon.pwm import ONE, Spreader
+from boards.silicon.pwm import ONE
 from plant.model import load
 from plant.plant import Plant
 from plant.units import ARCSEC
+from tests.boards.silicon.spreader import Spreader
 
 _PWM_NS = 50_000
 _TICK_NS = 5_000_000

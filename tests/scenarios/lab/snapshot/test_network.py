@@ -209,7 +209,7 @@ def test_what_no_snapshot_can_hold_is_said() -> None:
         ("boards.c.library", "Memory"),
         ("boards.c.isolated", "IsolatedMemory"),
         ("plant.fmu.library", "build"),
-        ("bus.protocol.page", "main"),
+        ("bus.protocol.page", "page"),
     ],
 )
 def test_what_a_module_imports_is_not_in_a_snapshot(module: str, name: str) -> None:

@@ -8,8 +8,8 @@ electrical turn is eight half steps.
     torque  = K (i_b cos e - i_a sin e);
     J dw/dt = torque - load - friction sign(w) - damping w.
 
-`FocusPort` (kinematic) is what the night runs on; `MotorFocusPort` has the same pins and gives the same
-positions once the rotor is at rest (tests/plant/test_stepper.py).
+`FocusPort` (kinematic) is what the night runs on. `MotorFocusPort` is its reference: it has the same pins and
+gives the same positions once the rotor is at rest.
 """
 
 from dataclasses import dataclass

@@ -7,7 +7,7 @@ import pytest
 
 from plant.compiled import Floats
 from plant.kernels import layout as at
-from plant.kernels.prepare import Numbers, prepare
+from plant.world import Numbers, prepare
 
 RATIO = 113 / 27 * 123 / 21 * 250 / 17
 NUMBERS = Numbers(
