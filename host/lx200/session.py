@@ -3,6 +3,7 @@
 Bytes become commands however they were cut: split, joined, doubled, with rubbish between them.
 """
 
+import re
 from collections.abc import Callable, Coroutine, Mapping
 from typing import Any
 
@@ -17,6 +18,9 @@ _LONGEST = 40
 """Longest command kept, in characters: `:SM` with a site's name is the longest there is."""
 
 
+_COMMAND = re.compile(f"{ACK}|:((?:(?!:[A-Za-z])[^#{ACK}]){{1,{_LONGEST}}})#")
+
+
 class Parser:
     """Fed byte by byte or whole, the commands are the same.
 
@@ -26,35 +30,16 @@ class Parser:
     """
 
     def __init__(self) -> None:
-        self._text: str | None = None
-        self._colon = False
+        self._rest = ""
 
     def feed(self, data: bytes) -> list[str]:
         """Commands that became complete, without `:` and `#`; `ACK` for the byte 0x06."""
-        commands: list[str] = []
-        for character in data.decode("latin-1"):
-            self._take(character, commands)
+        text, commands, end = self._rest + data.decode("latin-1"), [], 0
+        for found in _COMMAND.finditer(text):
+            commands.append(found[1] or ACK)
+            end = found.end()
+        self._rest = text[end:][-_LONGEST - 1 :]
         return commands
-
-    def _take(self, character: str, commands: list[str]) -> None:
-        if character == ACK:
-            self._text = None
-            commands.append(ACK)
-        elif character == ":" and self._text is None:
-            self._text, self._colon = "", False
-        elif self._text is None:
-            return
-        elif character == "#":
-            if self._text:
-                commands.append(self._text)
-            self._text = None
-        elif len(self._text) >= _LONGEST:
-            self._text = None
-        elif self._colon and character.isascii() and character.isalpha():
-            self._text, self._colon = character, False
-        else:
-            self._colon = character == ":"
-            self._text += character
 
 
 Handler = Callable[["Session", str], Coroutine[Any, Any, str]]
