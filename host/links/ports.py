@@ -13,54 +13,37 @@ from bus.protocol.report import REPORT_BYTES, pack_report, slot, unpack_commands
 from host.links.task import READ_S
 
 
-class HidrawPort:
-    """/dev/hidrawN. Reports have no number: 0 goes in front of what is written."""
+class HidPort:
+    """The gateway's reports: /dev/hidrawN, or `unix:PATH`, one to a message (`serve --hid unix:PATH`)."""
 
-    def __init__(self, path: str) -> None:
-        self._file = os.open(path, os.O_RDWR | os.O_CLOEXEC)
+    def __init__(self, spec: str) -> None:
+        kind, _, path = spec.partition(":")
+        self._number = b""
+        if kind == "unix":
+            with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as connection:
+                connection.connect(path)
+                self._file = connection.detach()
+        else:
+            self._file = os.open(spec, os.O_RDWR | os.O_CLOEXEC)
+            self._number = b"\0"  # reports have none
 
     def read(self) -> bytes:
         """One IN report."""
         ready, _, _ = select.select([self._file], [], [], READ_S)
-        return os.read(self._file, REPORT_BYTES) if ready else b""
-
-    def write(self, data: bytes) -> None:
-        """One OUT report."""
-        os.write(self._file, b"\0" + data)
-
-    def close(self) -> None:
-        """Close the device."""
-        os.close(self._file)
-
-
-class SocketPort:
-    """The same reports over a local SOCK_SEQPACKET socket (`schmidt serve --hid unix:PATH`)."""
-
-    def __init__(self, path: str) -> None:
-        self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-        try:
-            self._socket.connect(path)
-        except OSError:
-            self._socket.close()
-            raise
-
-    def read(self) -> bytes:
-        """One IN report."""
-        ready, _, _ = select.select([self._socket], [], [], READ_S)
         if not ready:
             return b""
-        data = self._socket.recv(REPORT_BYTES)
+        data = os.read(self._file, REPORT_BYTES)
         if not data:
             raise OSError("the other end has gone")
         return data
 
     def write(self, data: bytes) -> None:
         """One OUT report."""
-        self._socket.send(data)
+        os.write(self._file, self._number + data)
 
     def close(self) -> None:
         """Hang up."""
-        self._socket.close()
+        os.close(self._file)
 
 
 class CanPort:
