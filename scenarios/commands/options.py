@@ -8,33 +8,7 @@ from typing import Any
 import click
 
 from scenarios.doors.table import DoorKind
-
-PATH = click.Path(path_type=Path)
-
-
-class Number(click.FloatRange):
-    """A range that nan is not in: it passes every comparison of click's."""
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """The number, or click's own error."""
-        number = super().convert(value, param, ctx)
-        if number != number:
-            self.fail(f"{value} is no number", param, ctx)
-        return number
-
-
-SPEED = Number(0.01, 1000)
-"""`bus.outside.pacer` has the same bounds; not imported here, so that the command starts at once."""
-SEED = click.IntRange(0, 2**63 - 1)
-SECONDS = Number(min=0, min_open=True, max=1e7)
-NETWORK = click.Choice(["lab", "serial", "final"])
-"""`scenarios/lab/networks.py` has the same; not imported here, for the same reason."""
-network = click.option(
-    "--network", type=NETWORK, help="Which boards: the lab's 11, the 5 with RS232, or all 18."
-)
-runs = click.option(
-    "--runs", type=PATH, default=Path("out/console"), help="Folder of the runs recorded on the console."
-)
+from scenarios.options import PATH
 
 
 def muting(command: Callable[..., Any]) -> Callable[..., Any]:
