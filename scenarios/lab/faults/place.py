@@ -7,7 +7,7 @@ import numpy as np
 
 from bus.can.stuck import StuckDominant
 from scenarios.lab.faults.kind import FaultError
-from scenarios.lab.faults.layers import Evidence, Laid, Stacks, chained, turned
+from scenarios.lab.faults.layers import Evidence, Laid, Stacks, turned
 from scenarios.lab.network import Network
 
 _OF_AN_AXIS = {
@@ -50,11 +50,15 @@ class Place:
     network: Network
     random: np.random.Generator
     evidence: Evidence
-    layers: Stacks = field(default_factory=lambda: Stacks(chained))
     dials: Stacks = field(default_factory=lambda: Stacks(turned))
     stuck: list[StuckDominant] = field(default_factory=list)
     held: dict[str, int] = field(default_factory=dict)
     halted: dict[str, tuple[Laid, Evidence]] = field(default_factory=dict)
+
+    @property
+    def layers(self) -> Stacks:
+        """What lies on pins and receivers of the network."""
+        return self.network.layers
 
     def board(self, name: str) -> Any:
         """A board of the network; raises FaultError."""

@@ -12,7 +12,7 @@ from scenarios.native.modules import PACKAGE
 _OURS: Final = (
     "boards.", "bus.can.", "bus.protocol.", "bus.time.", "bus.outside.node", "host.sky.", "plant.",
     "scenarios.lab.blowing", "scenarios.lab.chain", "scenarios.lab.faults.", "scenarios.lab.network",
-    "scenarios.lab.nodes", "scenarios.lab.powerstages", "scenarios.lab.snapshot.",
+    "scenarios.lab.nodes", "scenarios.lab.snapshot.",
     "scenarios.doors.usb", "scenarios.language.model", MODULE,
 )  # fmt: skip
 """Modules whose classes may be in one. MODULE: boards of a user's own, which the scenario loads first."""
