@@ -16,7 +16,7 @@ from scenarios.doors.busview import EmulatedBus, Looks
 from scenarios.doors.door import DoorError
 from scenarios.doors.lines import Feed
 from scenarios.doors.livenetwork import LiveNetwork
-from scenarios.doors.options import DoorOptions
+from scenarios.doors.options import ServeOptions
 from scenarios.doors.pc import dated
 from scenarios.doors.usb import UsbFull, UsbPlug
 from scenarios.lab.session import log_headers
@@ -37,7 +37,7 @@ class HostProcess:
     Its program is started at once, as it has much to import; `open` waits until it has opened its doors.
     """
 
-    def __init__(self, served: LiveNetwork, options: DoorOptions, say: Callable[[str], None]) -> None:
+    def __init__(self, served: LiveNetwork, options: ServeOptions, say: Callable[[str], None]) -> None:
         self.name = "the host"
         self._served = served
         self._scenario = dated(served.scenario)  # once: the next process has the same sky
@@ -136,7 +136,7 @@ class HostProcess:
         self._record(False)
         if pipe is not None:
             with pipe, suppress(OSError, EOFError):
-                pipe.send(messages.Close())
+                pipe.send(("close",))
                 end_s = monotonic() + _END_S
                 while pipe.poll(max(0.0, end_s - monotonic())):
                     said = pipe.recv()
@@ -166,21 +166,22 @@ class HostProcess:
             said = self._pipe.recv()
         except (EOFError, OSError):
             raise DoorError("its process has ended") from None
-        if isinstance(said, messages.Report) and self._plug is not None:
-            with suppress(UsbFull):  # as if it were lost on the way
-                self._plug.write(self._served.now_ns, said.data)
-        elif isinstance(said, messages.Taken):
-            self._waiting, self._watching, self.doors = False, said.watching, said.doors
-            self._looks.wanted = said.looking
-            self._record(said.recording)
-        elif isinstance(said, messages.Wish):
-            self._send(self._bus.wish(said))
-        elif isinstance(said, messages.Said):
-            self._say(said.text)
-        elif isinstance(said, messages.Opened):
-            if said.error:
-                raise DoorError(said.error)
-            self._ready, self.doors = True, said.doors
+        match said:
+            case messages.Taken():
+                self._waiting, self._watching, self.doors = False, said.watching, said.doors
+                self._looks.wanted = said.looking
+                self._record(said.recording)
+            case "report", data if self._plug is not None:
+                with suppress(UsbFull):  # as if it were lost on the way
+                    self._plug.write(self._served.now_ns, data)
+            case "wish", number, command:
+                self._send(("done", number, *self._bus.wish(command)))
+            case "said", text:
+                self._say(text)
+            case "opened", doors, error:
+                if error:
+                    raise DoorError(error)
+                self._ready, self.doors = True, doors
 
     def _send(self, message: object) -> None:
         try:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from struct import Struct
 from typing import TYPE_CHECKING, Any
 
@@ -23,10 +23,6 @@ if TYPE_CHECKING:
     from scenarios.doors.steps import Steps
 
 
-class EntryError(RuntimeError):
-    """Somebody tried to enter while simulated time was running: a bug in a door."""
-
-
 class Entry:
     """Kinds of input by name and what each does. The same entries at the same times give the same trace.
 
@@ -43,13 +39,13 @@ class Entry:
     def register(self, kind: str, apply: Callable[[bytes], None]) -> None:
         """Let `kind` enter: `apply(data)` puts it into the network, at the present. One registration each."""
         if kind in self._apply:
-            raise EntryError(f"{kind} is registered twice")
+            raise RuntimeError(f"{kind} is registered twice")
         self._apply[kind] = apply
 
     def enter(self, kind: str, data: bytes) -> None:
         """Something comes in, now."""
         if self.running:
-            raise EntryError(f"{kind} would enter in the middle of a slice")
+            raise RuntimeError(f"{kind} would enter in the middle of a slice")
         if self._journal is not None:
             self._journal.write(self._queue.now_ns, kind, data)
         self.count += 1
@@ -80,6 +76,19 @@ def unpack_frame(data: bytes) -> Frame:
     """The frame of such bytes."""
     identifier, flags = _head.unpack_from(data)
     return Frame(identifier, data[_head.size :], bool(flags & _EXTENDED), bool(flags & _REMOTE))
+
+
+USAGE = {
+    "power": "power BOARD on|off",
+    "fault": "fault list | kinds | start NAME ARGUMENT=VALUE ... | clear NUMBER",
+}
+
+
+def _argument(word: str) -> tuple[str, str]:
+    name, _, value = word.partition("=")
+    if not (name and value):
+        raise ValueError(f"{word!r}: arguments are written name=value")
+    return name, value if name in ("node", "nodes", "sensor") else value.replace("_", " ")
 
 
 class LiveNetwork:
@@ -142,7 +151,7 @@ class LiveNetwork:
         self.ending = True
 
     def switch(self, board: str, on: bool) -> None:
-        """Switch the supply of a board, by name; raises NetworkError for one there is not."""
+        """Switch the supply of a board, by name; raises ValueError for one there is not."""
         self.network.board(board)
         self.entry.enter(BOARD, f"{board} {'on' if on else 'off'}".encode())
 
@@ -178,6 +187,20 @@ class LiveNetwork:
             return
         name, _, arguments = rest.partition(" ")
         self.faults.start(name, **json.loads(arguments))
+
+    def command(self, words: Sequence[str]) -> str:
+        """Carry out `power BOARD on|off`, `fault start NAME ARGUMENT=VALUE ...` or `fault clear NUMBER`; its
+        answer. A value has no blank, or `_` for one. Raises ValueError with one line."""
+        match words:
+            case ["power", board, "on" | "off" as state]:
+                self.switch(board, state == "on")
+                return f"{board} {state}"
+            case ["fault", "start", name, *pairs]:
+                return f"fault {self.start_fault(name, **dict(map(_argument, pairs)))} is on"
+            case ["fault", "clear", number] if number.isdecimal():
+                self.clear_fault(int(number))
+                return f"fault {number} cleared"
+        raise ValueError(USAGE.get(words[0], f"no command {words[0]!r}"))
 
     def run_until(self, t_ns: int) -> None:
         """Let simulated time go on to `t_ns`, as fast as it goes."""

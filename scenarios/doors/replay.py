@@ -23,15 +23,11 @@ _LAST_NS = 10_000_000_000_000_000
 """Longest session, as `scenarios.language.units` has it for a run: four months."""
 
 
-class ReplayError(ValueError):
-    """A folder that is no recorded session; one line."""
-
-
 def replay(folder: Path, out: Path) -> tuple[str, str | None]:
     """Run the session in `folder` again into `out`; returns both digests (None: it was never closed)."""
     facts = _facts(folder)
     if out.resolve() == folder.resolve():
-        raise ReplayError(f"{out}: a session is not replayed onto itself; give another --out")
+        raise ValueError(f"{out}: a session is not replayed onto itself; give another --out")
     begun = folder / BEGUN if facts.get("begun") else None
     if begun is not None:
         stood = standing(read(begun))
@@ -79,14 +75,14 @@ def _enter(served: LiveNetwork, folder: Path, facts: dict[str, Any], after: int 
     with shown("replaying", end_ns, begun=begun_ns) as show:
         for t_ns, kind, data in islice(_entries(folder / ENTERED), after, None):
             if t_ns < served.now_ns:
-                raise ReplayError(f"{folder / ENTERED}: {t_ns} {kind}: is earlier than the time reached")
+                raise ValueError(f"{folder / ENTERED}: {t_ns} {kind}: is earlier than the time reached")
             if "end_ns" in facts and t_ns > end_ns:
-                raise ReplayError(f"{folder / ENTERED}: {t_ns} {kind}: is after the session's end")
+                raise ValueError(f"{folder / ENTERED}: {t_ns} {kind}: is after the session's end")
             _go(served, t_ns, end_ns, show)
             try:
                 served.entry.enter(kind, data)
             except (KeyError, ValueError, struct.error) as error:
-                raise ReplayError(f"{folder / ENTERED}: {t_ns} {kind}: {error}") from None
+                raise ValueError(f"{folder / ENTERED}: {t_ns} {kind}: {error}") from None
         _go(served, max(t_ns, end_ns), end_ns, show)
 
 
@@ -111,7 +107,7 @@ def _facts(folder: Path) -> dict[str, Any]:
         ):
             raise ValueError("fields are missing, or of another type")
     except (OSError, ValueError, KeyError, TypeError) as error:
-        raise ReplayError(f"{folder}: no recorded session ({SESSION}): {reason(error)}") from None
+        raise ValueError(f"{folder}: no recorded session ({SESSION}): {reason(error)}") from None
     return facts
 
 
@@ -124,8 +120,8 @@ def _entries(file: Path) -> Iterator[tuple[int, str, bytes]]:
                     t_ns, kind, data = line.rstrip("\n").split(" ")
                     yield int(t_ns), kind, bytes.fromhex(data)
                 except ValueError:
-                    raise ReplayError(f"{file}:{number}: not an entry: {line[:60]!r}") from None
+                    raise ValueError(f"{file}:{number}: not an entry: {line[:60]!r}") from None
     except OSError as error:
-        raise ReplayError(f"{file}: {error.strerror}") from None
+        raise ValueError(f"{file}: {error.strerror}") from None
     except TextError as error:
-        raise ReplayError(f"{file}: {error}") from None
+        raise ValueError(f"{file}: {error}") from None

@@ -7,14 +7,13 @@ from bus.can import Frame
 from bus.can.candump import line, parsed
 from host.logs.files import reason
 from scenarios.doors.clients import address
-from scenarios.doors.control import ControlError
 
 
 class Stepped(AbstractContextManager["Stepped"]):
     """Joins the network served at [HOST:]PORT, once `clients` have (docs/guides/stepped-host.md).
 
     Time goes on in its calls and stands between them. name: puts its frames in order with those of others.
-    token: for servers of another machine. Raises ControlError for what is refused, OSError.
+    token: for servers of another machine. Raises ValueError for what is refused, OSError.
     """
 
     def __init__(self, at: str, name: str = "", clients: int = 1, token: str | None = None) -> None:
@@ -44,7 +43,7 @@ class Stepped(AbstractContextManager["Stepped"]):
             elif text.startswith("ok"):
                 return heard, text[3:]
             else:
-                raise ControlError(text.removeprefix("error: ") or "the server has gone")
+                raise ValueError(text.removeprefix("error: ") or "the server has gone")
 
     def send(self, identifier: int, data: bytes) -> None:
         """A frame, with the next step."""
@@ -67,7 +66,7 @@ _ANSWER_S = 60.0  # A snapshot on a busy machine takes its time.
 
 
 def tell(command: str, at: str, token: str | None = None) -> str:
-    """Send a command to the server `at` [HOST:]PORT; returns its answer, or raises ControlError."""
+    """Send a command to the server `at` [HOST:]PORT; returns its answer, or raises ValueError."""
     host, port = address(at, "--at")
     lines = ([f"token {token}"] if token else []) + [" ".join(command.split())]
     try:
@@ -85,9 +84,9 @@ def tell(command: str, at: str, token: str | None = None) -> str:
                     break
     except ConnectionRefusedError:
         what = f"nobody listens; start schmidt serve --control {port} first"
-        raise ControlError(f"{host}:{port}: {what}") from None
+        raise ValueError(f"{host}:{port}: {what}") from None
     except (OSError, UnicodeError) as error:
-        raise ControlError(f"{host}:{port}: no answer: {reason(error)}") from None
+        raise ValueError(f"{host}:{port}: no answer: {reason(error)}") from None
     if not answer.startswith("ok"):
-        raise ControlError(f"{host}:{port}: {answer.removeprefix('error: ') or 'no answer'}")
+        raise ValueError(f"{host}:{port}: {answer.removeprefix('error: ') or 'no answer'}")
     return answer.removeprefix("ok").strip()

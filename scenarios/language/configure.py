@@ -23,46 +23,11 @@ from plant.observer import sections
 from plant.parts import AxisModel, PlantModel
 from scenarios.language.document import ScenarioError, read
 from scenarios.language.model import Scenario, Step
-from scenarios.language.validate import check
+from scenarios.language.validate import check, schema
 
 _Q8, _Q16 = 256, 65536
-_MOST_STEPS = 3000
-
-
-def _block(beside: dict[str, Any], **fields: dict[str, Any]) -> dict[str, Any]:
-    """beside: fields that may be missing."""
-    found = {"type": "object", "required": list(fields), "properties": fields | beside}
-    return found | {"additionalProperties": False}
-
-
-def _number(low: float, **high: float) -> dict[str, Any]:
-    return {"type": "number", "minimum": low, **high}
-
-
-_WAVE = _number(-_MOST_STEPS, maximum=_MOST_STEPS)
-_TEXT = {"type": "string"}
-_SOURCE = {"source": _TEXT}
-_ROW = _block(
-    {"torque_Nm": {"type": "number"}} | _SOURCE,
-    order=_number(0, exclusiveMaximum=32768),
-    cosine_steps=_WAVE,
-    sine_steps=_WAVE,
-)
-_LANGUAGE = _block(
-    {
-        "plant": _TEXT,
-        "lines": {"type": "array", "maxItems": HARMONICS, "items": _ROW},
-        "left_out": {"type": "array", "items": _TEXT},
-    },
-    format={"enum": [FORMAT]},
-    axis={"enum": ["ra", "dec"]},
-    friction=_block(
-        _SOURCE,
-        steps=_number(0, maximum=_MOST_STEPS),
-        travel_arcsec={"type": "number", "exclusiveMinimum": 0, "maximum": ARCSEC_PER_TURN},
-    ),
-)
-"""What a file may say; orders are cycles per turn, with 16 bits before the point."""
+SCHEMA_FILE = Path(__file__).with_name("compensation.schema.json")
+"""What a file may say."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -115,7 +80,7 @@ def load_compensation(file: Path) -> Compensation:
     data = document.data
     if not isinstance(data, dict) or data.get("format") != FORMAT:
         raise ScenarioError(f"{file}: is not a compensation file, 'format: {FORMAT}' is missing")
-    check(document, _LANGUAGE)
+    check(document, schema(SCHEMA_FILE))
     lines = [
         Line(*(float(row[name]) for name in ("order", "cosine_steps", "sine_steps")))
         for row in data.get("lines", [])

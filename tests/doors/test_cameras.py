@@ -14,7 +14,7 @@ from host.camera.models import Window
 from host.camera.stars import from_file
 from host.sky.observed import observe
 from scenarios.doors.making import check
-from scenarios.doors.options import DoorOptions, OptionError
+from scenarios.doors.options import DoorOptions
 from tests.host.inprocess import HostInProcess
 from tests.host.telescope.conftest import Rig
 
@@ -110,12 +110,12 @@ def test_a_catalogue_that_cannot_be_used_says_why(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("option", ["stars", "frames"])
 def test_options_of_cameras_need_their_door(option: str, tmp_path: Path) -> None:
-    with pytest.raises(OptionError, match=f"--{option} needs --alpaca"):
+    with pytest.raises(ValueError, match=f"--{option} needs --alpaca"):
         check(DoorOptions(asked={"lx200": ("0",)}, **{option: tmp_path}))  # type: ignore[arg-type]
 
 
 def test_logs_of_the_host_need_a_host(tmp_path: Path) -> None:
-    with pytest.raises(OptionError, match=r"--logs is the host's: it needs --lx200, --alpaca or --console"):
+    with pytest.raises(ValueError, match=r"--logs is the host's: it needs --lx200, --alpaca or --console"):
         check(DoorOptions(asked={"control": ("0",)}, logs=tmp_path))
     check(DoorOptions(asked={"lx200": ("0",)}, logs=tmp_path))
 
