@@ -145,10 +145,6 @@ def _axis_rates(_device: TelescopeDevice, given: Parameters) -> list[dict[str, f
     return [] if axis == 2 else [{"Minimum": 0.0, "Maximum": slewing.FASTEST_DEG_S}]
 
 
-def _can_move_axis(_device: TelescopeDevice, given: Parameters) -> bool:
-    return within("Axis", given.integer("Axis"), 0, 2) < 2
-
-
 def _side(_device: TelescopeDevice, given: Parameters) -> None:
     slewing.right_ascension_h(given.number("RightAscension"))
     within("Declination", given.number("Declination"), -90, 90)
@@ -163,7 +159,7 @@ TelescopeDevice.members = table(
         "Altitude", "AtHome", "AtPark", "Azimuth", "Declination", "IsPulseGuiding", "RightAscension",
         "SiderealTime", "Slewing")),
     Member("AxisRates", _axis_rates),
-    Member("CanMoveAxis", _can_move_axis),
+    Member("CanMoveAxis", lambda _, given: within("Axis", given.integer("Axis"), 0, 2) < 2),
     Member("DeclinationRate", _drift(1), _set_drift(1, "DeclinationRate")),
     Member("DestinationSideOfPier", _side),
     Member("DoesRefraction", fixed(True), missing_put("switching refraction off")),

@@ -17,8 +17,7 @@ from host.sky.observed import Observed, observe
 from host.sky.pointfit import TooFewStars
 from host.sky.pointmodel import PointingModel
 from host.sky.pointstars import Sighting
-from host.sky.track import StarTrack
-from host.sky.tracks import DriveRate, GroundTrack, SkyTrack
+from host.sky.tracks import DriveRate, GroundTrack, SkyTrack, StarTrack
 from host.sky.visibility import BelowHorizon, Unreachable
 from host.telescope.jobs import Activity, Job, Reason, Refused
 from host.telescope.observatory import Observatory

@@ -72,7 +72,10 @@ def influences(found: list[Influence], inputs: list[str]) -> Figure | None:
     view.axvline(0.0, color="#5d6b7a", lw=0.8)
     view.set_yticks(
         range(len(strong)),
-        [f"{e.metric.removeprefix('metric: ')[:WORDS]}  ←  {_short(e.input)}" for e in strong],
+        [
+            f"{e.metric.removeprefix('metric: ')[:WORDS]}  ←  {e.input.removeprefix('input: ')}"
+            for e in strong
+        ],
     )
     view.set_xlim(-1.05, 1.05)
     title(view, "What moves what (filled: the interval does not hold zero)")
@@ -121,7 +124,3 @@ _PALETTE = [
 def _finite(values: Array) -> Array:
     found = values[np.isfinite(values)]
     return found if len(found) else np.zeros(1)
-
-
-def _short(name: str) -> str:
-    return name.removeprefix("input: ")

@@ -10,8 +10,7 @@ from bus.protocol import Device
 from host.client import TICK_NS
 from host.console.heard import HeardBus
 from host.console.runs import RecordedRuns
-from host.links.ports import CanPort, HidPort, SerialPort
-from host.links.task import LinkTask
+from host.links.ports import CanPort, HidPort, LinkTask, SerialPort
 from host.serial_link import SerialLink
 from scenarios.doors.options import HostOptions
 from scenarios.doors.pc import Host, TelescopePc, dated

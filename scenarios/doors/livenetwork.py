@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
-from struct import Struct
 from typing import TYPE_CHECKING, Any
 
-from bus.can.frame import Frame
+from bus.can.candump import line, parsed
+from bus.can.frame import Frame, check
 from bus.outside.node import OutsideNode
 from bus.outside.pacer import Pacer, Punctuality
 from bus.time import EventQueue
@@ -63,19 +63,19 @@ DEBUG = "debug"
 FAULT = "fault"
 """Kind of entry that starts or clears a fault: `start NAME {arguments}` or `clear NUMBER`."""
 
-_head = Struct("<IB")
-_EXTENDED, _REMOTE = 1, 2
+
+def frame_text(frame: Frame) -> str:
+    """A frame as candump writes it: `211#1101000000000000`."""
+    return line(0, frame).rpartition(" ")[2]
 
 
-def pack_frame(frame: Frame) -> bytes:
-    """A frame in the journal: identifier u32, flags u8 (1 extended, 2 remote), data."""
-    return _head.pack(frame.identifier, _EXTENDED * frame.extended | _REMOTE * frame.remote) + frame.data
-
-
-def unpack_frame(data: bytes) -> Frame:
-    """The frame of such bytes."""
-    identifier, flags = _head.unpack_from(data)
-    return Frame(identifier, data[_head.size :], bool(flags & _EXTENDED), bool(flags & _REMOTE))
+def frame_of(text: str) -> Frame:
+    """The frame of such a text; raises ValueError."""
+    found = parsed(f"(0.000000) can0 {text}")
+    if found is None:
+        raise ValueError("a frame is ID#DATA, such as 011#1105")
+    check(found[1])
+    return found[1]
 
 
 USAGE = {
@@ -139,12 +139,12 @@ class LiveNetwork:
             name = f"outside {index}" if index else "outside"
             self.nodes[kind] = OutsideNode(self.network.queue, self.network.wire, name)
         node = self.nodes[kind]
-        self.entry.register(kind, lambda data: node.arrive(unpack_frame(data)))
+        self.entry.register(kind, lambda data: node.arrive(frame_of(data.decode())))
         return node
 
     def frame(self, index: int, frame: Frame) -> None:
         """A frame for the wire, by the node of this number."""
-        self.entry.enter(f"can{index}", pack_frame(frame))
+        self.entry.enter(f"can{index}", frame_text(frame).encode())
 
     def stop(self) -> None:
         """End the serving with the next slice."""

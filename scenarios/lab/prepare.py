@@ -151,15 +151,12 @@ def chosen(
     """
     from scenarios.language.plants import plant_model
 
+    changes = Changes(seed=seed, plant=plant, network=network_name)
     if scenario_file is not None:
-        return prepare(scenario_file, Changes(seed=seed, plant=plant, network=network_name))
+        return prepare(scenario_file, changes)
     name = network_name or "lab"
-    scenario = Scenario(
-        file=Path(name),
-        name=name,
-        clock=UNDATED,
-        network={"name": name},
-        plant={"file": plant or DEFAULT_PLANT},
-        seed=1 if seed is None else seed,
+    bare = Scenario(
+        file=Path(name), name=name, clock=UNDATED, network={"name": name}, plant={"file": DEFAULT_PLANT}
     )
+    scenario = changes.to(bare)
     return scenario, plant_model(scenario.plant, Path())

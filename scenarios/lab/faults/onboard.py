@@ -26,6 +26,13 @@ class Hears(Laid):
             self.below(t_ns, frame)
 
 
+class Deaf(Hears):
+    """A board's controller passes nothing on."""
+
+    def __init__(self, place: Place, given: Mapping[str, Any], _t_ns: int) -> None:
+        super().__init__(place, place.board(given["node"]).port)
+
+
 def took_down(board: Board, t_ns: int, evidence: Evidence) -> None:
     """A board is about to lose its supply, or its processor's reset is: it acts unless that is so already."""
     if board.on or board._boot_ns > t_ns:

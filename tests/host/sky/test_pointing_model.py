@@ -16,7 +16,7 @@ from host.sky.pointmodel import PointingModel
 from host.sky.pointstars import Sighting
 from host.sky.pointterms import GEOMETRY, TERMS, TEXTS
 from host.sky.site import NAINITAL
-from host.sky.track import StarTrack
+from host.sky.tracks import StarTrack
 from plant.mount import sky
 from plant.parts import MountErrors
 from tests.host.sky.seen import LATITUDE, MOUNT, NAMES, axes, drawn, errors, misses, plain, sightings
