@@ -8,8 +8,6 @@ from typing import Any
 
 import click
 
-from scenarios.doors.table import DoorKind
-
 PATH = click.Path(path_type=Path)
 
 
@@ -92,7 +90,7 @@ def muting(command: Callable[..., Any]) -> Callable[..., Any]:
     )(call)
 
 
-def doors(*kinds: DoorKind[Any]) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+def doors(*kinds: Any) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """An option for each of these doors; the command gets their values as `asked`, by the doors' names."""
 
     def with_options(command: Callable[..., Any]) -> Callable[..., Any]:

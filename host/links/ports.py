@@ -6,7 +6,6 @@ import socket
 import threading
 from collections.abc import Callable
 from queue import SimpleQueue
-from typing import Protocol
 
 import can
 import serial
@@ -21,19 +20,6 @@ READ_S = 0.2
 RETRY_S = 1.0
 
 
-class Port(Protocol):
-    """Something that is open."""
-
-    def read(self) -> bytes:
-        """What has come, after at most READ_S; empty when nothing has. Raises OSError when it breaks."""
-
-    def write(self, data: bytes) -> None:
-        """Send. Raises OSError when it breaks."""
-
-    def close(self) -> None:
-        """Let go of it."""
-
-
 class LinkTask:
     """A thread that reads one port into `inbox` as (name, bytes).
 
@@ -44,7 +30,7 @@ class LinkTask:
     def __init__(
         self,
         name: str,
-        opener: Callable[[], Port],
+        opener: Callable[[], "HidPort | CanPort | SerialPort"],
         inbox: SimpleQueue[tuple[str, bytes]],
         say: Callable[[str], None],
     ) -> None:
@@ -54,7 +40,7 @@ class LinkTask:
         self._opener = opener
         self._inbox = inbox
         self._say = say
-        self._port: Port | None = None
+        self._port: HidPort | CanPort | SerialPort | None = None
         self._end = threading.Event()
         self._thread = threading.Thread(target=self._run, name=name, daemon=True)
 

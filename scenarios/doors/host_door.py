@@ -13,7 +13,6 @@ from host.client import TICK_NS
 from host.console.views import BusState
 from scenarios.doors import pipe_messages as messages
 from scenarios.doors.busview import EmulatedBus, Looks
-from scenarios.doors.door import DoorError
 from scenarios.doors.lines import Feed
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.options import ServeOptions
@@ -86,7 +85,7 @@ class HostProcess:
         self._asked_s = monotonic()
 
     def open(self) -> None:
-        """Have it open its doors: wait for that the first time, later only start it. Raises DoorError."""
+        """Have it open its doors: wait for that the first time, later only start it. Raises OSError."""
         if self._pipe is None:
             self._start()
         self._plug = self._served.usb.plug(self.name)
@@ -95,7 +94,7 @@ class HostProcess:
             end_s = monotonic() + _START_S
             while not self._ready:
                 if not self._pipe.poll(max(0.0, end_s - monotonic())):
-                    raise DoorError(f"{self.name} did not start within {_START_S:g} s")
+                    raise OSError(f"{self.name} did not start within {_START_S:g} s")
                 self._hear()
             self._once = True
 
@@ -113,7 +112,7 @@ class HostProcess:
             if monotonic() - self._asked_s > (_SILENT_S if self._ready else _START_S):
                 if self._process is not None:
                     self._process.kill()
-                raise DoorError("it does not answer")
+                raise OSError("it does not answer")
             return
         if self._served.steps is not None and now_ns - self._sent_ns < TICK_NS:
             return  # it does nothing between its ticks, and nobody waits for it
@@ -165,7 +164,7 @@ class HostProcess:
         try:
             said = self._pipe.recv()
         except (EOFError, OSError):
-            raise DoorError("its process has ended") from None
+            raise OSError("its process has ended") from None
         match said:
             case messages.Taken():
                 self._waiting, self._watching, self.doors = False, said.watching, said.doors
@@ -180,7 +179,7 @@ class HostProcess:
                 self._say(text)
             case "opened", doors, error:
                 if error:
-                    raise DoorError(error)
+                    raise OSError(error)
                 self._ready, self.doors = True, doors
 
     def _send(self, message: object) -> None:
@@ -188,7 +187,7 @@ class HostProcess:
             if self._pipe is not None:
                 self._pipe.send(message)
         except OSError:
-            raise DoorError("its process has ended") from None
+            raise OSError("its process has ended") from None
 
     def _bus_state(self) -> BusState | None:
         now_s = monotonic()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -155,37 +155,24 @@ def _with_step(scenario: Scenario, place: int, action: str, name: str, **argumen
     return dataclasses.replace(scenario, steps=tuple(steps))
 
 
-def _with_argument(scenario: Scenario, action: str, name: str, found: Callable[[Step], object]) -> Scenario:
-    """Every step of an action with one argument more."""
-    steps = (
-        dataclasses.replace(step, arguments={**step.arguments, name: found(step)})
-        if step.action == action
-        else step
-        for step in scenario.steps
+def completed(scenario: Scenario, model: PlantModel) -> Scenario:
+    """Firmware steps that know what their firmware is on the drives of a plant, compensation steps with their
+    tables; raises `ScenarioError`."""
+    return dataclasses.replace(
+        scenario, steps=tuple(_completed(scenario, model, each) for each in scenario.steps)
     )
-    return dataclasses.replace(scenario, steps=tuple(steps))
 
 
-def with_parameters(scenario: Scenario, model: PlantModel) -> Scenario:
-    """The scenario whose firmware steps know what their firmware is on the drives of a plant."""
-
-    def of_axes(step: Step) -> object:
-        return {axis: parameters_of(step.arguments["use"], model, axis) for axis in AXES}
-
-    return _with_argument(scenario, "firmware", "of_axes", of_axes)
-
-
-def read_tables(scenario: Scenario) -> Scenario:
-    """Read the files of the scenario's `compensation` steps: from here, then beside the scenario."""
-
-    def table(step: Step) -> object:
-        if "table" in step.arguments:
-            return step.arguments["table"]
+def _completed(scenario: Scenario, model: PlantModel, step: Step) -> Step:
+    found: dict[str, Any] = {}
+    if step.action == "firmware":
+        found["of_axes"] = {axis: parameters_of(step.arguments["use"], model, axis) for axis in AXES}
+    elif step.action == "compensation" and "table" not in step.arguments:
         name = step.arguments["file"]
-        places = Path(name), scenario.file.parent / name
+        places = Path(name), scenario.file.parent / name  # from here, then beside the scenario
         try:
-            return load_compensation(next((path for path in places if path.is_file()), Path(name)))
+            file = next((path for path in places if path.is_file()), Path(name))
+            found["table"] = load_compensation(file)
         except ScenarioError as error:
             raise ScenarioError(f"{step.where}: compensation: {error}") from None
-
-    return _with_argument(scenario, "compensation", "table", table)
+    return dataclasses.replace(step, arguments={**step.arguments, **found})
