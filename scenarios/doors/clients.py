@@ -105,18 +105,9 @@ class Client:
 
     def deliver(self, data: bytes) -> None:
         """Hand all of it over, where nothing else waits; who does not read within a minute is hung up on."""
-        try:
-            done = self._connection.send(data)  # nearly always all of it, without asking how long it may take
-        except BlockingIOError:
-            done = 0
-        except OSError:
-            self.gone = True
-            return
-        if done == len(data):
-            return
         self._connection.settimeout(_PATIENCE_S)
         try:
-            self._connection.sendall(memoryview(data)[done:])
+            self._connection.sendall(data)
         except OSError:
             self.gone = True
         self._connection.setblocking(False)

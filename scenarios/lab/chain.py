@@ -14,7 +14,7 @@ from boards.core import PeriodicBoard
 from bus.can import Frame
 from bus.protocol import MEASUREMENT_BASE, AxisMode, unpack_motion
 from plant.gears import RATIO
-from scenarios.lab.faults.layers import Evidence, Staged
+from scenarios.lab.layers import Evidence, Staged
 from scenarios.lab.network import Network
 
 NONE, SWITCHES, WATCHDOG = "none", "switches", "watchdog"
@@ -31,6 +31,8 @@ _STRONGEST: Final = 1.5  # Most that the fault `weak_supply` makes of the supply
 
 class _Unsupplied(Staged):
     """Motors without supply, whatever their switches do."""
+
+    last = True
 
     def duties(self, _wanted: tuple[float, float]) -> tuple[float, float]:
         """None."""
@@ -124,7 +126,7 @@ class Chain:
             self._network.queue.at(t_ns + DROP_NS, self._drop)
 
     def _drop(self, t_ns: int) -> None:
-        self._cut = [_Unsupplied(self._network, axis, Evidence(""), t_ns, last=True) for axis in self._ends]
+        self._cut = [_Unsupplied(self._network, axis, Evidence(""), t_ns) for axis in self._ends]
 
     def _close(self, t_ns: int) -> None:
         self.open = False

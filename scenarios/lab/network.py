@@ -34,7 +34,7 @@ from plant.axis import AxisPort
 from plant.dome import DomePort
 from plant.plant import Plant
 from scenarios.lab.drive import axis_config
-from scenarios.lab.faults.layers import Stacks, chained
+from scenarios.lab.layers import Stacks, chained
 from scenarios.lab.networks import FINAL, NetworkConfig, NodeConfig, devices_of
 from scenarios.lab.nodes import BOARDS, Site, pins_of
 

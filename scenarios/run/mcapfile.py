@@ -119,8 +119,9 @@ def _rows(path: Path) -> Iterator[Entry]:
     """Axis logs, and traces of the plant (truth) and of the host."""
     for batch in batches(path):
         source = Source(f"/{path.stem.replace('-', '/')}", dict.fromkeys(batch.schema.names, NUMBER))
+        time = "t_s" if path.suffix == ".parquet" else "t"
         for row in batch.to_pylist():
-            yield Entry(round((row.get("t_s", row.get("t")) or 0.0) * 1e9), source, row)
+            yield Entry(round((row[time] or 0.0) * 1e9), source, row)
 
 
 def _lines(path: Path) -> Iterator[Entry]:

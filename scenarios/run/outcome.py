@@ -20,7 +20,7 @@ from host.sky.observed import observe_many
 from host.sky.pointread import AXES, DECLINATION, HOUR_ANGLE
 from plant.mount import sky
 from plant.parts import MountErrors
-from scenarios.lab.faults.layers import Evidence
+from scenarios.lab.layers import Evidence
 from scenarios.language.model import Scenario
 from scenarios.language.programme import Record, guiding_of
 

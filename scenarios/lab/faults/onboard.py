@@ -7,8 +7,8 @@ from boards.core import Board, PeriodicBoard
 from boards.core.halt import Halt
 from bus.can import Frame, Port
 from scenarios.lab.faults.kind import FaultError
-from scenarios.lab.faults.layers import Evidence, Laid, Stacks, words
 from scenarios.lab.faults.place import Place
+from scenarios.lab.layers import Evidence, Laid, Stacks, words
 
 
 class Hears(Laid):

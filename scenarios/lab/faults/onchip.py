@@ -6,9 +6,9 @@ from typing import Any
 from bus.can import Frame
 from bus.protocol import COMMAND_BASE, REPLY_BASE
 from scenarios.lab.faults.kind import FaultError
-from scenarios.lab.faults.layers import Laid, Staged
 from scenarios.lab.faults.onboard import Hears
 from scenarios.lab.faults.place import Place
+from scenarios.lab.layers import Laid, Staged
 
 _ENDAT_BITS = 36  # F1, F2, 29 bits of position, CRC-5 (hardware.md 3.1).
 

@@ -6,8 +6,8 @@ from typing import Any
 from bus.units import ARCSEC_PER_RAD
 from plant.kernels import layout as at
 from scenarios.lab.faults.kind import Active, FaultError
-from scenarios.lab.faults.layers import AXES, Staged, Watched
 from scenarios.lab.faults.place import Place
+from scenarios.lab.layers import AXES, Staged, Watched
 
 
 class OneDuty(Staged):

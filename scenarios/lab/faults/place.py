@@ -9,7 +9,7 @@ import yaml
 
 from bus.can.stuck import StuckDominant
 from scenarios.lab.faults.kind import FaultError
-from scenarios.lab.faults.layers import Evidence, Laid, Stacks, turned
+from scenarios.lab.layers import Evidence, Laid, Stacks, turned
 from scenarios.lab.network import Network
 
 _ROWS = yaml.safe_load(Path(__file__).with_name("sensors.yaml").read_text(encoding="utf-8"))

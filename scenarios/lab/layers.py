@@ -37,10 +37,14 @@ class Stacks:
         self._combine = combine
         self._stacks: list[_Stack] = []
 
-    def add(self, owner: Any, name: Any, item: Any, last: bool = False) -> None:
-        """Put `item` on top of an attribute, or of an entry; last: below all that lies there."""
+    def add(self, owner: Any, name: Any, item: Any) -> None:
+        """Put `item` on top of an attribute, or of an entry; a `Staged` one below, so that it comes later."""
         stack = self._find(owner, name)
-        stack.items.insert(0 if last else len(stack.items), item)
+        if isinstance(item, Staged):
+            stack.items.insert(0, item)
+            stack.items.sort(key=lambda each: not each.last)
+        else:
+            stack.items.append(item)
         self._put(stack)
 
     def remove(self, owner: Any, name: Any, item: Any) -> None:
@@ -88,9 +92,9 @@ class Laid:
 
     below: Callable[..., Any]
 
-    def __init__(self, layers: Stacks, owner: Any, name: str, last: bool = False) -> None:
+    def __init__(self, layers: Stacks, owner: Any, name: str) -> None:
         self._layers, self._place = layers, (owner, name)
-        layers.add(owner, name, self, last)
+        layers.add(owner, name, self)
 
     def __call__(self, *arguments: Any) -> Any:
         """In the place of `below`."""
@@ -165,17 +169,17 @@ AXES = {"ra": 0, "dec": 1}
 class Staged(Laid):
     """Between the PWM of an axis board and its motors: gives other duties, 0..1 each, than are wanted."""
 
-    def __init__(
-        self, network: "Network", axis: str, evidence: Evidence, t_ns: int, last: bool = False
-    ) -> None:
-        """last: whatever lies there already, this has the last word."""
+    last = False
+    """Whatever else lies there, this has the last word."""
+
+    def __init__(self, network: "Network", axis: str, evidence: Evidence, t_ns: int) -> None:
         boards: Any = network.boards
         self._pwm = boards[f"AXIS_{axis.upper()}"].pwm
         self._axis, self._evidence, self._queue = axis, evidence, network.queue
         above, place = self._pwm.drive, AXES[axis] * at.WIDTH + at.DUTY
         written = network.plant.view[place], network.plant.view[place + 1]
         self._wanted: tuple[float, float] = above._wanted if isinstance(above, Staged) else written
-        super().__init__(network.layers, self._pwm, "drive", last)
+        super().__init__(network.layers, self._pwm, "drive")
         self._again(t_ns, self._pwm.drive)
 
     def __call__(self, t_ns: int, duty_a: float, duty_b: float) -> None:
