@@ -15,12 +15,12 @@ one is for. Both encoders are taken to be aligned to one zero (ASSUMPTION; the p
 """
 
 import math
-from functools import cache
 from typing import NamedTuple
 
-from bus.protocol.nodes import AUXILIARY, FrameCodec, messages_of
+from bus.protocol.nodes import AUXILIARY
 from bus.units import ARCSEC_PER_TURN
 from host.link import HidLink
+from host.procedures.dome import codecs
 from host.sky.mount import STEP_ARCSEC
 
 RATIO = 10.8
@@ -75,7 +75,7 @@ def auxiliary(
     data = link.measurements.get(BOARDS[axis])
     if data is None or steps is None:
         return None
-    values = _codecs()[BOARDS[axis]].unpack(data)
+    values = codecs()[f"AUXILIARY_{axis.upper()}"].unpack(data)
     if values["Alarm"]:
         return None
     later_s = latched_s - (link.measured_ns[BOARDS[axis]] * 1e-9 - values["Age"] * 1e-6)
@@ -103,9 +103,3 @@ def combine(
     weights = (ABSOLUTE_ARCSEC**-2, sigma_arcsec**-2)
     estimate = (weights[0] * absolute + weights[1] * auxiliary_arcsec) / sum(weights)
     return Combined(absolute, auxiliary_arcsec, difference, estimate, sum(weights) ** -0.5)
-
-
-@cache
-def _codecs() -> dict[int, FrameCodec]:
-    found = (FrameCodec(each) for each in messages_of(AUXILIARY) if each.name.endswith("_ENCODER"))
-    return {codec.identifier & 0x7F: codec for codec in found}

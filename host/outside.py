@@ -7,6 +7,7 @@ tick does may depend on it. Commands go through `Telescope.call`, readings come 
 from __future__ import annotations
 
 import asyncio
+import re
 import sys
 import threading
 from collections.abc import Coroutine
@@ -19,6 +20,16 @@ _CLOSE_S = 0.3
 """Time the doors get to say goodbye; serve has to end within a second. ASSUMPTION."""
 _SWITCH_S = 0.0005
 """How long the ticking thread waits for Python's lock at most; the default of 5 ms would make ticks late."""
+
+HEAD_BYTES = 8
+"""The longest method word of HTTP and the space behind it."""
+_METHOD = re.compile(rb"(GET|HEAD|POST|PUT|DELETE|CONNECT|OPTIONS|TRACE|PATCH) ")
+
+
+def is_http(head: bytes) -> bool:
+    """Whether a stream that begins with `head`, its first `HEAD_BYTES`, is a web page's: any page may send a
+    request to a port that speaks no HTTP."""
+    return _METHOD.match(head) is not None
 
 
 class Service:

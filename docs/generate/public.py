@@ -73,7 +73,7 @@ PUBLIC: dict[str, tuple[str, tuple[str, ...]]] = {
         "Loading, wiring, judging, campaigns and doors.",
         (
             "scenarios.lab.lab:Lab",
-            "scenarios.lab.faults.layers:Evidence",
+            "scenarios.lab.layers:Evidence",
             "scenarios.lab.prepare:load",
             "scenarios.lab.prepare:prepare",
             "scenarios.lab.prepare:Changes",

@@ -1,12 +1,11 @@
 """ICameraV4: the telescope's camera and the guide camera, on the emulated sky."""
 
-from host.alpaca.device import Device, Member, Put, fixed, missing, missing_put, of, stated, table
+from host.alpaca.device import Device, Member, does, fixed, of, stated, table, zero
 from host.alpaca.errors import INVALID_OPERATION, INVALID_VALUE, AlpacaError, within
 from host.alpaca.parameters import Parameters
 from host.alpaca.slewing import pulse
 from host.camera.camera import Camera, Frame, Order, State
 from host.camera.models import Window
-from host.camera.readout import Counts
 from host.telescope import AsyncDesk
 
 MOST_BINNING = 4
@@ -62,25 +61,19 @@ class CameraDevice(Device):
         return Window(left=w["StartX"] * b, top=w["StartY"] * b, width=w["NumX"] * b, height=w["NumY"] * b)
 
 
-def _array(device: CameraDevice, _: Parameters) -> Counts:
-    return device.frame.counts
-
-
-def _set_window(name: str) -> Put:
-    async def put(device: CameraDevice, given: Parameters) -> None:
-        device.window[name] = given.integer(name)
-
-    return put
-
-
-def _set_binning(name: str) -> Put:
-    async def put(device: CameraDevice, given: Parameters) -> None:
+def _binning(name: str) -> Member:
+    def put(device: CameraDevice, given: Parameters) -> None:
         device.binning = int(within(name, given.integer(name), 1, MOST_BINNING))
 
-    return put
+    return Member(name, of(lambda d: d.binning), does(put))
 
 
-async def _start(device: CameraDevice, given: Parameters) -> None:
+def _edge(name: str) -> Member:
+    put = does(lambda d, given: d.window.update({name: given.integer(name)}))
+    return Member(name, of(lambda d: d.window[name]), put)
+
+
+def _start(device: CameraDevice, given: Parameters) -> None:
     low = device.model.shortest_s
     seconds, lit = within("Duration", given.number("Duration"), 0, LONGEST_S), given.truth("Light")
     if lit:
@@ -91,34 +84,11 @@ async def _start(device: CameraDevice, given: Parameters) -> None:
     device.camera.start(Order(seconds=max(seconds, low), window=window, binning=device.binning, lit=lit))
 
 
-async def _abort(device: CameraDevice, _: Parameters) -> None:
-    device.camera.abort()
-
-
-async def _stop(device: CameraDevice, _: Parameters) -> None:
-    device.camera.stop()
-
-
-async def _set_mode(_device: CameraDevice, given: Parameters) -> None:
-    within("ReadoutMode", given.integer("ReadoutMode"), 0, 0)
-
-
-_CAN = ("AbortExposure", "PulseGuide", "StopExposure")
-_CANNOT = ("AsymmetricBin", "FastReadout", "GetCoolerPower", "SetCCDTemperature")
-_MISSING = (
-    "BayerOffsetX", "BayerOffsetY", "CoolerPower", "Gains", "GainMax", "GainMin", "HeatSinkTemperature",
-    "OffsetMax", "OffsetMin", "Offsets",
-)  # fmt: skip
-_MISSING_PUT = ("CoolerOn", "FastReadout", "Gain", "Offset", "SetCCDTemperature", "SubExposureDuration")
 CameraDevice.members = table(
-    *(Member(f"Can{what}", fixed(True)) for what in _CAN),
-    *(Member(f"Can{what}", fixed(False)) for what in _CANNOT),
-    *(Member(name, missing(name)) for name in _MISSING),
-    *(Member(name, missing(name), missing_put(name)) for name in _MISSING_PUT),
-    *(Member(name, of(lambda d: d.binning), _set_binning(name)) for name in ("BinX", "BinY")),
+    "camera",
+    *map(_binning, ("BinX", "BinY")),
     *(Member(f"Max{name}", fixed(MOST_BINNING)) for name in ("BinX", "BinY")),
-    *(Member(name, of(lambda d, name=name: d.window[name]), _set_window(name)) for name in (  # type: ignore[misc]
-        "StartX", "StartY", "NumX", "NumY")),
+    *map(_edge, ("StartX", "StartY", "NumX", "NumY")),
     *(Member(name, stated(name)) for name in (
         "CameraState", "CCDTemperature", "ImageReady", "IsPulseGuiding", "PercentCompleted")),
     Member("CameraXSize", of(lambda d: d.model.width)),
@@ -126,22 +96,16 @@ CameraDevice.members = table(
     Member("ElectronsPerADU", of(lambda d: d.model.gain_e_adu)),
     Member("ExposureMax", fixed(LONGEST_S)),
     Member("ExposureMin", of(lambda d: d.model.shortest_s)),
-    Member("ExposureResolution", fixed(0.0)),
     Member("FullWellCapacity", of(lambda d: d.model.full_well_e)),
-    Member("HasShutter", fixed(True)),
-    Member("ImageArray", _array),
-    Member("ImageArrayVariant", _array),
+    *(Member(name, of(lambda d: d.frame.counts)) for name in ("ImageArray", "ImageArrayVariant")),
     Member("LastExposureDuration", of(lambda d: d.frame.seconds)),
     Member("LastExposureStartTime", of(lambda d: d.camera.clock.iso(d.frame.start_s).rstrip("Z"))),
     Member("MaxADU", of(lambda d: d.model.most_adu)),
-    Member("PixelSizeX", of(lambda d: d.model.pixel_m * 1e6)),
-    Member("PixelSizeY", of(lambda d: d.model.pixel_m * 1e6)),
-    Member("ReadoutMode", fixed(0), _set_mode),
-    Member("ReadoutModes", fixed(["normal"])),
+    *(Member(name, of(lambda d: d.model.pixel_m * 1e6)) for name in ("PixelSizeX", "PixelSizeY")),
+    zero("ReadoutMode", Parameters.integer),
     Member("SensorName", of(lambda d: d.model.sensor)),
-    Member("SensorType", fixed(0)),
-    Member("AbortExposure", put=_abort),
+    Member("AbortExposure", put=does(lambda d, _: d.camera.abort())),
     Member("PulseGuide", put=pulse),
-    Member("StartExposure", put=_start),
-    Member("StopExposure", put=_stop),
+    Member("StartExposure", put=does(_start)),
+    Member("StopExposure", put=does(lambda d, _: d.camera.stop())),
 )  # fmt: skip

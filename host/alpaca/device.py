@@ -4,7 +4,10 @@ import asyncio
 import importlib.metadata
 from collections.abc import Callable, Coroutine, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
+
+import yaml
 
 from host.alpaca.errors import (
     ACTION_NOT_IMPLEMENTED,
@@ -13,6 +16,7 @@ from host.alpaca.errors import (
     AlpacaError,
     not_implemented,
     of_refusal,
+    within,
 )
 from host.alpaca.parameters import Parameters
 from host.telescope import AsyncDesk, Job, Refused, Snapshot, Telescope
@@ -120,7 +124,16 @@ async def _disconnect(device: Device, _: Parameters) -> None:
     device.connected = False
 
 
-async def _command(_device: Device, given: Parameters) -> None:
+def does(act: Callable[[Any, Parameters], object]) -> Put:
+    """A method that needs nothing of the telescope."""
+
+    async def put(device: Device, given: Parameters) -> None:
+        act(device, given)
+
+    return put
+
+
+def _command(_device: Device, given: Parameters) -> None:
     given.text("Command")
     given.truth("Raw")
     not_implemented("sending raw commands")
@@ -144,15 +157,23 @@ COMMON = (
     Member("SupportedActions", lambda device, _: list(device.actions), always=True),
     Member("DeviceState", _device_state),
     Member("Action", put=lambda device, given: device.act(given)),
-    Member("CommandBlind", put=_command),
-    Member("CommandBool", put=_command),
-    Member("CommandString", put=_command),
+    *(Member(f"Command{what}", put=does(_command)) for what in ("Blind", "Bool", "String")),
 )
 
 
-def table(*members: Member) -> dict[str, Member]:
-    """Members of a device by the word in the URL."""
-    return {member.name.lower(): member for member in (*COMMON, *members)}
+CONSTANTS: dict[str, dict[str, Any]] = yaml.safe_load(
+    Path(__file__).with_name("constants.yaml").read_text(encoding="utf-8")
+)
+
+
+def table(kind: str, *members: Member) -> dict[str, Member]:
+    """Members of a kind of device by the word in the URL; what never changes is in `constants.yaml`."""
+    own = CONSTANTS[kind]
+    constant = [Member(name, fixed(value)) for name, value in own.get("fixed", {}).items()]
+    constant += [Member(name, missing(name)) for name in own.get("missing", ())]
+    constant += [Member(name, put=missing_put(name)) for name in own.get("missing_methods", ())]
+    constant += [Member(name, missing(name), missing_put(name)) for name in own.get("missing_both", ())]
+    return {member.name.lower(): member for member in (*COMMON, *constant, *members)}
 
 
 def fixed(value: object) -> Get:
@@ -168,6 +189,11 @@ def of(read: Callable[[Any], object]) -> Get:
 def stated(name: str) -> Get:
     """A property that `DeviceState` tells, too."""
     return lambda device, _: device.state()[name]
+
+
+def zero(name: str, read: Callable[[Parameters, str], float]) -> Member:
+    """A property that is 0, and that can be set to nothing else."""
+    return Member(name, fixed(0), does(lambda _, given: within(name, read(given, name), 0, 0)))
 
 
 def missing(name: str) -> Get:

@@ -4,7 +4,7 @@ import asyncio
 from collections.abc import Callable
 
 from bus.protocol import Reply
-from host.alpaca.device import Device, Member, fixed, missing, missing_put, stated, table, unknown
+from host.alpaca.device import Device, Member, stated, table, unknown
 from host.alpaca.errors import within
 from host.alpaca.parameters import Parameters
 from host.procedures.dome import BOARD as DOME_BOARD
@@ -64,18 +64,12 @@ async def _turn(device: DomeDevice, given: Parameters) -> None:
     await device.command(lambda t: t.house.turn(azimuth % 360))
 
 
-_CAN = ("SetAzimuth", "SetShutter", "Slave")
-_CANNOT = ("FindHome", "Park", "SetAltitude", "SetPark", "SyncAzimuth")
 DomeDevice.members = table(
-    *(Member(f"Can{what}", fixed(True)) for what in _CAN),
-    *(Member(f"Can{what}", fixed(False)) for what in _CANNOT),
-    *(Member(name, missing(name)) for name in ("Altitude", "AtHome", "AtPark")),
-    *(Member(name, put=missing_put(name)) for name in (
-        "FindHome", "Park", "SetPark", "SlewToAltitude", "SyncToAzimuth")),
+    "dome",
     *(Member(name, stated(name)) for name in ("Azimuth", "ShutterStatus", "Slewing")),
     Member("Slaved", lambda device, _: device.desk.telescope.house.slaved, _slave),
     Member("AbortSlew", put=lambda device, _: device.command(lambda t: t.house.stop())),
     Member("CloseShutter", put=lambda device, _: device.command(lambda t: t.house.shutter(False))),
     Member("OpenShutter", put=lambda device, _: device.command(lambda t: t.house.shutter(True))),
     Member("SlewToAzimuth", put=_turn),
-)  # fmt: skip
+)

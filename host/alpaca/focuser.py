@@ -1,13 +1,11 @@
 """IFocuserV4: the focus drive in half steps of 6.25 µm, 0 at the inner end."""
 
-from host.alpaca.device import Device, Member, fixed, missing, missing_put, stated, table, unknown
+from host.alpaca.device import Device, Member, fixed, missing_put, stated, table, unknown
 from host.alpaca.errors import within
 from host.alpaca.parameters import Parameters
 from host.procedures.focus import TRAVEL_HALF_STEPS
 
 MAX_STEP = 2 * TRAVEL_HALF_STEPS
-STEP_UM = 6.25
-"""One half step (P11)."""
 
 
 class FocuserDevice(Device):
@@ -38,14 +36,11 @@ async def _move(device: FocuserDevice, given: Parameters) -> None:
 
 
 FocuserDevice.members = table(
-    Member("Absolute", fixed(True)),
+    "focuser",
     *(Member(name, stated(name)) for name in ("IsMoving", "Position")),
     Member("MaxIncrement", fixed(MAX_STEP)),
     Member("MaxStep", fixed(MAX_STEP)),
-    Member("StepSize", fixed(STEP_UM)),
     Member("TempComp", fixed(False), missing_put("TempComp")),
-    Member("TempCompAvailable", fixed(False)),
-    Member("Temperature", missing("Temperature")),
     Member("Halt", put=lambda device, _: device.run(lambda t: t.focuser.hold())),
     Member("Move", put=_move),
 )

@@ -3,8 +3,8 @@
 import math
 
 from bus.protocol.nodes import WEATHER
-from host.alpaca.device import Device, Member, missing, stated, table, unknown
-from host.alpaca.errors import INVALID_VALUE, AlpacaError, not_implemented, within
+from host.alpaca.device import CONSTANTS, Device, Member, does, stated, table, unknown, zero
+from host.alpaca.errors import INVALID_VALUE, AlpacaError, not_implemented
 from host.alpaca.parameters import Parameters
 
 _WET_MM_H = 1.0
@@ -18,10 +18,6 @@ _SENSORS = {
     "Temperature": "air at the mast, °C",
     "WindSpeed": "at the mast, mean of a second, m/s",
 }
-_WITHOUT = (
-    "CloudCover", "Pressure", "SkyBrightness", "SkyQuality", "SkyTemperature", "StarFWHM", "WindDirection",
-    "WindGust",
-)  # fmt: skip
 
 
 def dew_point_c(air_c: float, humidity: float) -> float:
@@ -75,7 +71,7 @@ class SafetyMonitorDevice(Device):
 
 def _sensor(given: Parameters) -> str:
     name = given.text("SensorName").lower()
-    if name in map(str.lower, _WITHOUT):
+    if name in map(str.lower, CONSTANTS["observingconditions"]["missing"]):
         not_implemented(name)
     found = {sensor.lower(): sensor for sensor in _SENSORS}.get(name)
     if found is None:
@@ -90,20 +86,12 @@ def _since(device: ObservingConditionsDevice, given: Parameters) -> float:
     return device.age_s
 
 
-async def _average(_device: Device, given: Parameters) -> None:
-    within("AveragePeriod", given.number("AveragePeriod"), 0, 0)
-
-
-async def _refresh(_device: Device, _: Parameters) -> None:
-    """The station sends by itself, once a second."""
-
-
 ObservingConditionsDevice.members = table(
+    "observingconditions",
     *(Member(name, stated(name)) for name in _SENSORS),
-    *(Member(name, missing(name)) for name in _WITHOUT),
-    Member("AveragePeriod", lambda _device, _: 0.0, _average),
-    Member("Refresh", put=_refresh),
+    zero("AveragePeriod", Parameters.number),
+    Member("Refresh", put=does(lambda _device, _: None)),  # the station sends by itself, once a second
     Member("SensorDescription", lambda _device, given: _SENSORS[_sensor(given)]),
     Member("TimeSinceLastUpdate", _since),
 )
-SafetyMonitorDevice.members = table(Member("IsSafe", stated("IsSafe"), always=True))
+SafetyMonitorDevice.members = table("safetymonitor", Member("IsSafe", stated("IsSafe"), always=True))

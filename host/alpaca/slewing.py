@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable
 
-from host.alpaca.device import Device, Member, Put, missing_put
+from host.alpaca.device import Device, Member, Put
 from host.alpaca.errors import INVALID_OPERATION, INVALID_VALUE, PARKED, VALUE_NOT_SET, AlpacaError, within
 from host.alpaca.parameters import Parameters
 from host.sky.apparent import Place, star_of_apparent
@@ -140,7 +140,6 @@ async def pulse(device: Device, given: Parameters) -> None:
 
 MEMBERS = (
     Member("AbortSlew", put=_abort),
-    Member("FindHome", put=missing_put("FindHome")),
     Member("MoveAxis", put=_move_axis),
     Member("Park", put=lambda device, _: device.do(lambda t: t.drive.park())),
     Member("PulseGuide", put=pulse),
@@ -148,7 +147,6 @@ MEMBERS = (
     *_slew("SlewToAltAz", _ground),
     *_slew("SlewToCoordinates", _sky(_coordinates)),
     *_slew("SlewToTarget", _sky(_target)),
-    Member("SyncToAltAz", put=missing_put("SyncToAltAz")),
     Member("SyncToCoordinates", put=_sync(_coordinates)),
     Member("SyncToTarget", put=_sync(_target)),
     Member("Unpark", put=_unpark),

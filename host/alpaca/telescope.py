@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 
 from host.alpaca import slewing
-from host.alpaca.device import Get, Member, Put, fixed, missing, missing_put, of, table, unknown
+from host.alpaca.device import Get, Member, Put, does, fixed, missing, missing_put, of, table, unknown
 from host.alpaca.errors import INVALID_OPERATION, VALUE_NOT_SET, AlpacaError, within
 from host.alpaca.parameters import Parameters
 from host.sky.apparent import Place, sidereal_time_rad
@@ -12,11 +12,7 @@ from host.sky.observed import Observed
 from host.sky.tracks import SIDEREAL_ARCSEC_S
 from host.telescope import DriveRate, Observatory
 
-APERTURE_M = 0.5
-"""Corrector of the 50/80 cm Schmidt (paper, section 1)."""
-FOCAL_LENGTH_M = 0.5
-"""f/1 (paper, section 1)."""
-RATES = (DriveRate.SIDEREAL, DriveRate.LUNAR, DriveRate.SOLAR, DriveRate.KING)
+RATES = tuple(DriveRate)
 """By ASCOM's number."""
 _SECONDS_RA_PER_ARCSEC = 1 / SIDEREAL_ARCSEC_S
 """ASCOM's RightAscensionRate counts seconds of right ascension per sidereal second."""
@@ -91,12 +87,12 @@ def _target(attribute: str, name: str) -> Get:
     return get
 
 
-async def _set_target_ra(device: TelescopeDevice, given: Parameters) -> None:
+def _set_target_ra(device: TelescopeDevice, given: Parameters) -> None:
     value = given.number("TargetRightAscension")
     device.target_ra_h = slewing.right_ascension_h(value)
 
 
-async def _set_target_dec(device: TelescopeDevice, given: Parameters) -> None:
+def _set_target_dec(device: TelescopeDevice, given: Parameters) -> None:
     value = given.number("TargetDeclination")
     device.target_dec_deg = within("TargetDeclination", value, -90, 90)
 
@@ -149,52 +145,34 @@ def _axis_rates(_device: TelescopeDevice, given: Parameters) -> list[dict[str, f
     return [] if axis == 2 else [{"Minimum": 0.0, "Maximum": slewing.FASTEST_DEG_S}]
 
 
-def _can_move_axis(_device: TelescopeDevice, given: Parameters) -> bool:
-    return within("Axis", given.integer("Axis"), 0, 2) < 2
-
-
 def _side(_device: TelescopeDevice, given: Parameters) -> None:
     slewing.right_ascension_h(given.number("RightAscension"))
     within("Declination", given.number("Declination"), -90, 90)
     missing("DestinationSideOfPier")(_device, given)
 
 
-_CAN = (
-    "Park", "PulseGuide", "SetDeclinationRate", "SetGuideRates", "SetPark", "SetRightAscensionRate",
-    "SetTracking", "Slew", "SlewAltAz", "SlewAltAzAsync", "SlewAsync", "Sync", "Unpark",
-)  # fmt: skip
-_CANNOT = ("FindHome", "SetPierSide", "SyncAltAz")
 _FIXED = missing_put("moving the telescope")
 
 TelescopeDevice.members = table(
-    *(Member(f"Can{what}", fixed(True)) for what in _CAN),
-    *(Member(f"Can{what}", fixed(False)) for what in _CANNOT),
+    "telescope",
     *(Member(name, of(_STATE[name])) for name in (
         "Altitude", "AtHome", "AtPark", "Azimuth", "Declination", "IsPulseGuiding", "RightAscension",
         "SiderealTime", "Slewing")),
-    Member("AlignmentMode", fixed(1)),
-    Member("ApertureArea", fixed(math.pi * APERTURE_M**2 / 4)),
-    Member("ApertureDiameter", fixed(APERTURE_M)),
     Member("AxisRates", _axis_rates),
-    Member("CanMoveAxis", _can_move_axis),
+    Member("CanMoveAxis", lambda _, given: within("Axis", given.integer("Axis"), 0, 2) < 2),
     Member("DeclinationRate", _drift(1), _set_drift(1, "DeclinationRate")),
     Member("DestinationSideOfPier", _side),
     Member("DoesRefraction", fixed(True), missing_put("switching refraction off")),
-    Member("EquatorialSystem", fixed(1)),
-    Member("FocalLength", fixed(FOCAL_LENGTH_M)),
     Member("GuideRateDeclination", _guide(1), _set_guide(1, "GuideRateDeclination")),
     Member("GuideRateRightAscension", _guide(0), _set_guide(0, "GuideRateRightAscension")),
     Member("RightAscensionRate", _drift(0), _set_drift(0, "RightAscensionRate")),
-    Member("SideOfPier", missing("SideOfPier"), missing_put("SideOfPier")),
     Member("SiteElevation", of(lambda d: d.about.site.height_m), _FIXED),
     Member("SiteLatitude", of(lambda d: math.degrees(d.about.site.latitude_rad)), _FIXED),
     Member("SiteLongitude", of(lambda d: math.degrees(d.about.site.longitude_rad)), _FIXED),
-    Member("SlewSettleTime", missing("SlewSettleTime"), missing_put("SlewSettleTime")),
-    Member("TargetDeclination", _target("target_dec_deg", "TargetDeclination"), _set_target_dec),
-    Member("TargetRightAscension", _target("target_ra_h", "TargetRightAscension"), _set_target_ra),
+    Member("TargetDeclination", _target("target_dec_deg", "TargetDeclination"), does(_set_target_dec)),
+    Member("TargetRightAscension", _target("target_ra_h", "TargetRightAscension"), does(_set_target_ra)),
     Member("Tracking", of(_STATE["Tracking"]), _set_tracking),
     Member("TrackingRate", lambda device, _: RATES.index(device.desk.telescope.drive.drive_rate), _set_rate),
-    Member("TrackingRates", fixed(list(range(len(RATES))))),
     Member("UTCDate", of(_STATE["UTCDate"]), missing_put("setting the clock")),
     *slewing.MEMBERS,
 )  # fmt: skip

@@ -9,10 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from bus.time import generator
-from host.camera.flat import flat
 from host.camera.light import light
 from host.camera.models import CameraModel, Look, Window
-from host.camera.readout import Counts, read_out
+from host.camera.readout import Counts, flat, read_out
 from host.camera.seeing import Wander
 from host.camera.stars import Sky
 from host.sky.observed import Clock

@@ -7,7 +7,7 @@ import numpy as np
 from astropy.io import fits
 
 from host.camera.camera import Frame, file_name
-from host.camera.place import catalogued, turning
+from host.camera.stars import catalogued, turning
 from host.sky.observed import Clock
 from host.sky.site import Site
 

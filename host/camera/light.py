@@ -6,11 +6,10 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from bus.units import ARCSEC_PER_RAD
-from host.camera.flat import cosines
 from host.camera.models import CameraModel, Look, Window
-from host.camera.place import catalogued, observed, plane, turning
+from host.camera.readout import cosines
 from host.camera.seeing import Wander, sigma_arcsec
-from host.camera.stars import Array, Sky, Stars
+from host.camera.stars import Array, Sky, Stars, catalogued, observed, plane, turning
 from host.sky.observed import Clock
 from host.sky.site import Site
 

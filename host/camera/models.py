@@ -2,7 +2,10 @@
 
 import math
 from dataclasses import dataclass
+from pathlib import Path
 from typing import NamedTuple
+
+import yaml
 
 from bus.units import ARCSEC_PER_RAD
 
@@ -85,45 +88,11 @@ class CameraModel:
         return (1 << 16) - 1
 
 
-MAIN = CameraModel(
-    name="Schmidt camera",
-    sensor="KAF-16801E",  # paper, section 2.1
-    aperture_m=0.5,  # paper, section 1
-    focal_length_m=0.5,  # f/1 (paper, section 1)
-    pixel_m=9e-6,  # paper, section 2.1
-    width=4096,
-    height=4096,
-    # ASSUMPTION: as the same 9 µm pixel without anti-blooming in the KAF-0401E and KAF-1602E (SBIG, manual of
-    # the ST-7XE to ST-10XE, table 4.3). The KAF-16801E's own data sheet was not found.
-    full_well_e=100e3,
-    read_noise_e=15.0,  # ASSUMPTION: a slow readout of that amplifier
-    dark_e_s=0.02,  # ASSUMPTION: cooled
-    gain_e_adu=1.6,  # ASSUMPTION: the full well fills the converter
-    offset_adu=1000,  # ASSUMPTION
-    throughput=0.35,  # ASSUMPTION: detector 0.6, optics, obstruction and air together 0.58
-    temperature_c=-20.0,  # ASSUMPTION
-    shortest_s=0.1,  # ASSUMPTION: a mechanical shutter
-    focusing=True,
-    blooms=True,  # ASSUMPTION: the letter E without L is a detector without an anti-blooming drain
-)
-GUIDE = CameraModel(
-    name="Guide camera",
-    sensor="guide",
-    aperture_m=0.08,  # ASSUMPTION: a refractor beside the tube, without flexure of its own
-    focal_length_m=0.4,  # ASSUMPTION
-    pixel_m=3.75e-6,  # ASSUMPTION: 1.9″ to the pixel
-    width=1280,  # ASSUMPTION
-    height=960,  # ASSUMPTION
-    full_well_e=20e3,  # ASSUMPTION
-    read_noise_e=4.0,  # ASSUMPTION
-    dark_e_s=0.5,  # ASSUMPTION: not cooled
-    gain_e_adu=0.4,  # ASSUMPTION
-    offset_adu=500,  # ASSUMPTION
-    throughput=0.4,  # ASSUMPTION
-    temperature_c=10.0,  # ASSUMPTION: that of the night
-    shortest_s=0.01,  # ASSUMPTION: an electronic shutter
-    focusing=False,
-    blooms=False,  # ASSUMPTION: CMOS pixels with a drain
+MAIN, GUIDE = (
+    CameraModel(**fields)
+    for fields in yaml.safe_load(
+        Path(__file__).with_name("cameras.yaml").read_text(encoding="utf-8")
+    ).values()
 )
 CAMERAS = (MAIN, GUIDE)
 """By Alpaca's device number."""

@@ -3,6 +3,9 @@
 import os
 import select
 import socket
+import threading
+from collections.abc import Callable
+from queue import SimpleQueue
 
 import can
 import serial
@@ -10,57 +13,117 @@ import serial
 from bus.can.frame import Frame
 from bus.outside.external import open_bus
 from bus.protocol.report import REPORT_BYTES, pack_report, slot, unpack_commands
-from host.links.task import READ_S
+from host.logs.files import reason as reason_of
+
+READ_S = 0.2
+"""Longest wait within a read; how soon a task notices that it shall end."""
+RETRY_S = 1.0
 
 
-class HidrawPort:
-    """/dev/hidrawN. Reports have no number: 0 goes in front of what is written."""
+class LinkTask:
+    """A thread that reads one port into `inbox` as (name, bytes).
 
-    def __init__(self, path: str) -> None:
-        self._file = os.open(path, os.O_RDWR | os.O_CLOEXEC)
+    say: called with one line when the port opens or breaks; from the task, so it has to be thread-safe.
+    lost: writes that found it broken.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        opener: Callable[[], "HidPort | CanPort | SerialPort"],
+        inbox: SimpleQueue[tuple[str, bytes]],
+        say: Callable[[str], None],
+    ) -> None:
+        self.name = name
+        self.lost = 0
+        self.breaks = 0
+        self._opener = opener
+        self._inbox = inbox
+        self._say = say
+        self._port: HidPort | CanPort | SerialPort | None = None
+        self._end = threading.Event()
+        self._thread = threading.Thread(target=self._run, name=name, daemon=True)
+
+    def start(self) -> None:
+        """Begin; a port that is not there is tried again every second."""
+        self._thread.start()
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the port is there."""
+        return self._port is not None
+
+    def write(self, data: bytes) -> None:
+        """Send, or count it lost."""
+        port = self._port
+        try:
+            if port is None:
+                raise OSError("closed")
+            port.write(data)
+        except Exception:  # the reading side reports what broke
+            self.lost += 1
+
+    def close(self) -> None:
+        """End the task."""
+        self._end.set()
+        if self._thread.is_alive():
+            self._thread.join(2 * READ_S + RETRY_S)
+
+    def _run(self) -> None:
+        reason = ""
+        while not self._end.is_set():
+            try:
+                self._port = self._opener()
+                self._say(f"{self.name}: open")
+                reason = ""
+                while not self._end.is_set():
+                    data = self._port.read()
+                    if data:
+                        self._inbox.put((self.name, data))
+            except Exception as error:  # whatever a driver raises, it breaks this link only
+                self.breaks += 1
+                words = reason_of(error)
+                if words != reason:
+                    self._say(f"{self.name}: broken: {words}; tried again every second")
+                    reason = words
+            finally:
+                port, self._port = self._port, None
+                if port is not None:
+                    port.close()
+            self._end.wait(RETRY_S)
+
+
+class HidPort:
+    """The gateway's reports: /dev/hidrawN, or `unix:PATH`, one to a message (`serve --hid unix:PATH`)."""
+
+    def __init__(self, spec: str) -> None:
+        kind, _, path = spec.partition(":")
+        self._number = b""
+        if kind == "unix":
+            with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as connection:
+                connection.connect(path)
+                self._file = connection.detach()
+        else:
+            self._file = os.open(spec, os.O_RDWR | os.O_CLOEXEC)
+            self._number = b"\0"  # reports have none
 
     def read(self) -> bytes:
         """One IN report."""
         ready, _, _ = select.select([self._file], [], [], READ_S)
-        return os.read(self._file, REPORT_BYTES) if ready else b""
-
-    def write(self, data: bytes) -> None:
-        """One OUT report."""
-        os.write(self._file, b"\0" + data)
-
-    def close(self) -> None:
-        """Close the device."""
-        os.close(self._file)
-
-
-class SocketPort:
-    """The same reports over a local SOCK_SEQPACKET socket (`schmidt serve --hid unix:PATH`)."""
-
-    def __init__(self, path: str) -> None:
-        self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-        try:
-            self._socket.connect(path)
-        except OSError:
-            self._socket.close()
-            raise
-
-    def read(self) -> bytes:
-        """One IN report."""
-        ready, _, _ = select.select([self._socket], [], [], READ_S)
         if not ready:
             return b""
-        data = self._socket.recv(REPORT_BYTES)
+        data = os.read(self._file, REPORT_BYTES)
         if not data:
             raise OSError("the other end has gone")
         return data
 
     def write(self, data: bytes) -> None:
         """One OUT report."""
-        self._socket.send(data)
+        os.write(self._file, self._number + data)
 
     def close(self) -> None:
         """Hang up."""
-        self._socket.close()
+        os.close(self._file)
 
 
 class CanPort:
@@ -75,7 +138,8 @@ class CanPort:
         if message is None or message.is_extended_id or message.is_error_frame or len(message.data) != 8:
             return b""
         frame = Frame(message.arbitration_id, bytes(message.data))
-        return pack_report([slot(frame)]) if _from_a_board(frame.identifier) else b""
+        of_a_board = 0x100 <= frame.identifier < 0x400 or 0x700 <= frame.identifier < 0x780
+        return pack_report([slot(frame)]) if of_a_board else b""
 
     def write(self, data: bytes) -> None:
         """The commands of one OUT report."""
@@ -107,7 +171,3 @@ class SerialPort:
     def close(self) -> None:
         """Close it."""
         self._port.close()
-
-
-def _from_a_board(identifier: int) -> bool:
-    return 0x100 <= identifier < 0x400 or 0x700 <= identifier < 0x780

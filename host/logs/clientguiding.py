@@ -13,9 +13,9 @@ import numpy as np
 from bus.units import ARCSEC_PER_RAD
 from host.camera.camera import Frame
 from host.camera.models import GUIDE
-from host.logs.ascii import KEPT, put_aside
 from host.logs.files import LogError, write_file
 from host.logs.guidelog import opening, section
+from host.logs.journal import KEPT, put_aside
 from host.procedures.autoguide import Guided
 from host.sky.observed import observe_many
 from host.sky.tracks import Pulse, SkyTrack

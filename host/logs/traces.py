@@ -1,11 +1,13 @@
 """Traces as Parquet: columns of floats, streamed in row groups so that a night never sits in memory."""
 
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from host.logs.axis import COLUMNS
 from host.logs.files import LogError, reason
 
 _ROWS_PER_GROUP = 1 << 13
@@ -83,6 +85,22 @@ def read(
     wanted = list(dict.fromkeys(("t_s", *columns)))
     table = pq.read_table(path, columns=wanted, filters=[("t_s", ">=", low_s), ("t_s", "<=", high_s)])
     return {name: _column(table[name]) for name in wanted}
+
+
+def batches(path: Path, columns: Sequence[str] | None = None) -> Iterator[Any]:
+    """A trace, or an axis log, as record batches of floats; all columns, or some."""
+    if path.suffix == ".parquet":
+        import pyarrow.parquet as pq
+
+        yield from pq.ParquetFile(path).iter_batches(_ROWS_PER_GROUP, columns=columns)
+        return
+    from pyarrow import csv
+
+    with path.open(encoding="utf-8") as file:
+        header = sum(1 for _ in iter(lambda: file.readline().startswith("#"), False))
+    floats = csv.ConvertOptions(column_types=dict.fromkeys(COLUMNS, "float64"), include_columns=columns)
+    with csv.open_csv(path, csv.ReadOptions(skip_rows=header), convert_options=floats) as rows:
+        yield from rows
 
 
 def overview(path: Path, columns: tuple[str, ...], points: int = 4000) -> dict[str, npt.NDArray[np.float64]]:

@@ -3,8 +3,7 @@
 from collections.abc import Callable
 
 from bus.protocol import SpeedClass
-from host.lx200.handbox import FREQUENCIES
-from host.lx200.session import Handler, Session
+from host.lx200.session import FREQUENCIES, Handler, Session
 from host.sky.apparent import star_of_apparent
 from host.sky.catalogue import Star
 from host.telescope import DriveRate, Reason, Refused, Telescope

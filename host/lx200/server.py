@@ -11,12 +11,11 @@ from functools import partial
 from pathlib import Path
 from time import monotonic
 
-from host.guard import HEAD_BYTES, is_http
-from host.lx200.handbox import Handbox
 from host.lx200.moving import MOVING, TAKING
 from host.lx200.reading import READING
-from host.lx200.session import Session
+from host.lx200.session import Handbox, Session
 from host.lx200.setting import SETTING
+from host.outside import HEAD_BYTES, is_http
 from host.telescope import AsyncDesk, Telescope
 
 PLAIN = READING | MOVING

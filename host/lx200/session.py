@@ -3,18 +3,62 @@
 Bytes become commands however they were cut: split, joined, doubled, with rubbish between them.
 """
 
+import datetime as dt
+import re
 from collections.abc import Callable, Coroutine, Mapping
 from typing import Any
 
 from bus.protocol import SpeedClass
-from host.lx200.handbox import Handbox
 from host.sky.apparent import Place
-from host.telescope import AsyncDesk, Refused, Snapshot, Telescope
+from host.sky.observed import Clock
+from host.telescope import AsyncDesk, DriveRate, Refused, Snapshot, Telescope
+
+FREQUENCIES = {DriveRate.SIDEREAL: 60.1, DriveRate.SOLAR: 60.0, DriveRate.LUNAR: 57.9, DriveRate.KING: 60.1}
+"""Hz, as Meade's manual gives them; the drive's own rates are DriveRate's."""
+UTC_OFFSET_H = -5.5
+"""Hours to add to local time for UTC: India, where the telescope stands."""
+
+
+class Handbox:
+    """Clock and site of the hand box.
+
+    A client may set the time. It is kept and read back, running on. The sky stays the telescope's own
+    (its clock is the emulation's, or the PC's), and so does where it points.
+    """
+
+    def __init__(self, clock: Clock, site_name: str) -> None:
+        self.precise = True
+        """As the last `:U#` of any client left it: what the next one begins with."""
+        self.utc_offset_h = UTC_OFFSET_H
+        self.frequency_hz = FREQUENCIES[DriveRate.SIDEREAL]
+        self.site_names = [site_name, "Site 2", "Site 3", "Site 4"]
+        self._clock = clock
+        self._local_ahead = dt.timedelta(hours=-UTC_OFFSET_H)
+
+    def local(self, t_s: float) -> dt.datetime:
+        """Local date and time at a time of the telescope."""
+        return self._utc(t_s) + self._local_ahead
+
+    def set_time(self, t_s: float, time: dt.time) -> None:
+        """It is this time of the day."""
+        self._local_ahead = dt.datetime.combine(self.local(t_s).date(), time) - self._utc(t_s)
+
+    def set_date(self, t_s: float, date: dt.date) -> None:
+        """It is this day."""
+        self._local_ahead = dt.datetime.combine(date, self.local(t_s).time()) - self._utc(t_s)
+
+    def _utc(self, t_s: float) -> dt.datetime:
+        start = self._clock.start_utc.astimezone(dt.UTC).replace(tzinfo=None)
+        return start + dt.timedelta(seconds=t_s)
+
 
 ACK = "\x06"
 """Asks for the alignment mode; a command of one byte."""
 _LONGEST = 40
 """Longest command kept, in characters: `:SM` with a site's name is the longest there is."""
+
+
+_COMMAND = re.compile(f"{ACK}|:((?:(?!:[A-Za-z])[^#{ACK}]){{1,{_LONGEST}}})#")
 
 
 class Parser:
@@ -26,35 +70,16 @@ class Parser:
     """
 
     def __init__(self) -> None:
-        self._text: str | None = None
-        self._colon = False
+        self._rest = ""
 
     def feed(self, data: bytes) -> list[str]:
         """Commands that became complete, without `:` and `#`; `ACK` for the byte 0x06."""
-        commands: list[str] = []
-        for character in data.decode("latin-1"):
-            self._take(character, commands)
+        text, commands, end = self._rest + data.decode("latin-1"), [], 0
+        for found in _COMMAND.finditer(text):
+            commands.append(found[1] or ACK)
+            end = found.end()
+        self._rest = text[end:][-_LONGEST - 1 :]
         return commands
-
-    def _take(self, character: str, commands: list[str]) -> None:
-        if character == ACK:
-            self._text = None
-            commands.append(ACK)
-        elif character == ":" and self._text is None:
-            self._text, self._colon = "", False
-        elif self._text is None:
-            return
-        elif character == "#":
-            if self._text:
-                commands.append(self._text)
-            self._text = None
-        elif len(self._text) >= _LONGEST:
-            self._text = None
-        elif self._colon and character.isascii() and character.isalpha():
-            self._text, self._colon = character, False
-        else:
-            self._colon = character == ":"
-            self._text += character
 
 
 Handler = Callable[["Session", str], Coroutine[Any, Any, str]]

@@ -9,7 +9,7 @@ from bus.protocol.scales import rate_q16
 from host.client import Client, ClientError, Procedure
 from host.procedures.power import AXES, power_off
 from host.sky.mount import STEP_ARCSEC, Mount
-from host.sky.track import StarTrack
+from host.sky.tracks import StarTrack
 
 ENCODERS: Final = (Device.POSITION_RA, Device.POSITION_DEC)
 CLASSES: Final = ("slew", "set", "guide", "fine")
@@ -125,7 +125,8 @@ class Pointing:
             for index, axis in enumerate(AXES):
                 mean = sums[index] / max(count, 1)
                 if abs(mean) > LOST_ARCSEC:
-                    raise ClientError(f"{axis.name}: does not follow {self._name()}, {mean:.0f}″ off")
+                    name = self.track.star.name if self.track is not None else "its target"
+                    raise ClientError(f"{axis.name}: does not follow {name}, {mean:.0f}″ off")
                 trims[index] = min(max(mean / TRIM_S, -TRIM_ARCSEC_S), TRIM_ARCSEC_S)
                 if abs(mean) > NUDGE_ARCSEC:
                     yield from self.client.ask(axis, Opcode.NUDGE, round(mean / STEP_ARCSEC))
@@ -173,6 +174,3 @@ class Pointing:
             if reading is None or abs(reading.position - goal) * STEP_ARCSEC > arcsec:
                 return False
         return True
-
-    def _name(self) -> str:
-        return self.track.star.name if self.track is not None else "its target"

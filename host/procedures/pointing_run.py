@@ -9,7 +9,7 @@ from host.sky.apparent import apparent_of_observed, equatorial, star_of_apparent
 from host.sky.catalogue import Star
 from host.sky.observed import Observed, observe
 from host.sky.pointstars import Sighting
-from host.sky.track import StarTrack
+from host.sky.tracks import StarTrack
 from host.sky.visibility import Standpoint
 
 Eye = Callable[[Star, int], tuple[float, float]]

@@ -22,10 +22,6 @@ _MOST_ARCSEC = 324_000.0
 """Largest term, 90°. ASSUMPTION: the zero of an axis may be anywhere, no mount has more of anything else."""
 
 
-class PointingFileError(ValueError):
-    """A file of a pointing model that cannot be used: one line of what is wrong."""
-
-
 @dataclass(frozen=True, kw_only=True)
 class Term:
     """A fitted coefficient in arcsec, and half of its 95 % interval."""
@@ -119,13 +115,13 @@ def _angles(vector: Array, near_rad: Array) -> tuple[Array, Array]:
 
 
 def parsed(text: str, path: Path) -> PointingModel:
-    """The model of a file's text; raises PointingFileError, which names the path."""
+    """The model of a file's text; raises ValueError, which names the path."""
     try:
         data = json.loads(text)
     except (RecursionError, ValueError) as error:
-        raise PointingFileError(f"{path}: is not JSON: {error}") from None
+        raise ValueError(f"{path}: is not JSON: {error}") from None
     if not isinstance(data, dict) or data.pop("format", None) != FORMAT:
-        raise PointingFileError(f"{path}: expected a JSON object with the format {FORMAT!r}")
+        raise ValueError(f"{path}: expected a JSON object with the format {FORMAT!r}")
     try:
         listed = data.pop("terms")
         if not isinstance(listed, list) or not all(isinstance(each, dict) for each in listed):
@@ -137,8 +133,8 @@ def parsed(text: str, path: Path) -> PointingModel:
         if not all(abs(size) <= _MOST_ARCSEC for each in terms for size in (each.arcsec, each.within_arcsec)):
             raise ValueError("a term is larger than 90°")
     except (KeyError, TypeError, ValueError) as error:
-        raise PointingFileError(f"{path}: not a pointing model: {error}") from None
+        raise ValueError(f"{path}: not a pointing model: {error}") from None
     for each in terms:
         if each.name not in tuple(TERMS):  # whatever a file calls it: not all of JSON can be looked up
-            raise PointingFileError(f"{path}: no term is called {each.name!r}; there are {', '.join(TERMS)}")
+            raise ValueError(f"{path}: no term is called {each.name!r}; there are {', '.join(TERMS)}")
     return model

@@ -36,10 +36,6 @@ _MOST_DEG = {HOUR_ANGLE: 360.0, DECLINATION: 90.0, AXES[0]: 360.0, AXES[1]: 360.
 """Of angles, either way; an axis may stand beyond the pole."""
 
 
-class PointingRunError(ValueError):
-    """A pointing run that cannot be read: file, line, and what is wrong."""
-
-
 def is_run(path: Path) -> bool:
     """Whether a file is a pointing run: `.dat` or `.tpt` without another's head, or a CSV by its columns."""
     if path.suffix.lower() not in (".dat", ".tpt", ".csv") or not path.is_file():
@@ -52,20 +48,18 @@ def is_run(path: Path) -> bool:
 
 
 def read(path: Path) -> Stars:
-    """The stars of a run; raises PointingRunError."""
+    """The stars of a run; raises ValueError."""
     try:
         lines = path.read_text(encoding="utf-8").splitlines()
     except UnicodeDecodeError:
-        raise PointingRunError(f"{path}: is not UTF-8 text") from None
+        raise ValueError(f"{path}: is not UTF-8 text") from None
     return _csv(path, lines) if path.suffix.lower() == ".csv" else _tpoint(path, lines)
 
 
 def _csv(path: Path, lines: list[str]) -> Stars:
     latitude = next((found[1] for line in lines if (found := _LATITUDE.match(line))), None)
     if latitude is None:
-        raise PointingRunError(
-            f"{path}: the latitude is missing; write a first line '# latitude_deg: 29.367'"
-        )
+        raise ValueError(f"{path}: the latitude is missing; write a first line '# latitude_deg: 29.367'")
     first = next(number for number, line in enumerate(lines) if not line.startswith("#"))
     every = [each.strip() for each in lines[first].split(",")]
     names = [each for each in every if each != LABEL]
@@ -73,7 +67,7 @@ def _csv(path: Path, lines: list[str]) -> Stars:
     for number, row in enumerate(_rows(path, lines[first + 1 :]), first + 2):
         if row and not row[0].startswith("#"):
             if len(row) != len(every):
-                raise PointingRunError(f"{path}:{number}: {len(row)} values for {len(every)} columns")
+                raise ValueError(f"{path}:{number}: {len(row)} values for {len(every)} columns")
             rows.append(
                 [
                     _number(path, number, each, _MOST_DEG.get(name, math.inf))
@@ -93,7 +87,7 @@ def _rows(path: Path, lines: list[str]) -> Iterator[list[str]]:
     try:
         yield from csv.reader(lines)
     except csv.Error as error:
-        raise PointingRunError(f"{path}: {error}") from None
+        raise ValueError(f"{path}: {error}") from None
 
 
 def _tpoint(path: Path, lines: list[str]) -> Stars:
@@ -102,22 +96,20 @@ def _tpoint(path: Path, lines: list[str]) -> Stars:
     body = [(number, line.split()) for number, line in enumerate(lines, 1)][1:]
     for number, words in body:
         if words and words[0].startswith(":") and "ALTAZ" in " ".join(words).upper():
-            raise PointingRunError(f"{path}:{number}: only equatorial mounts have these terms, not ALTAZ")
+            raise ValueError(f"{path}:{number}: only equatorial mounts have these terms, not ALTAZ")
     body = [(number, words) for number, words in body if words and not words[0].startswith((":", "!"))]
     body = [(number, words) for number, words in body if words[0].upper() not in _SKIPPED]
     if not body:
-        raise PointingRunError(f"{path}: a TPOINT file has a caption, then a line of the site, then stars")
+        raise ValueError(f"{path}: a TPOINT file has a caption, then a line of the site, then stars")
     number, words = body[0]
     site = [_number(path, number, each) for each in words]
     if len(site) < 6:
-        raise PointingRunError(
-            f"{path}:{number}: the site is latitude in three parts, date in three parts, …"
-        )
+        raise ValueError(f"{path}:{number}: the site is latitude in three parts, date in three parts, …")
     latitude = _sexagesimal(words[:3], site[:3], path, number, 90.0)
     a, b = _refraction(path, number, site[6:])
     stars = [_star(path, line, words, math.radians(latitude), a, b) for line, words in body[1:]]
     if not stars:
-        raise PointingRunError(f"{path}: there are no stars after the site")
+        raise ValueError(f"{path}: there are no stars after the site")
     h, d, ra, dec = np.array(stars).T
     return Stars(h=h, d=d, ra=ra, dec=dec, latitude_rad=math.radians(latitude), others={})
 
@@ -130,7 +122,7 @@ def _refraction(path: Path, number: int, air: list[float]) -> tuple[float, float
     for value, (what, low, high, unit) in zip(air, _AIR, strict=False):
         if not low <= value <= high:
             told = f"{what} {value:g} {unit}".rstrip()
-            raise PointingRunError(f"{path}:{number}: {told} is outside {low:g} to {high:g}")
+            raise ValueError(f"{path}:{number}: {told} is outside {low:g} to {high:g}")
     humidity, wavelength = air[3:5] if len(air) >= 5 else (0.5, 0.55)
     a, b = erfa.refco(air[1], air[0], humidity, wavelength)
     return float(a), float(b)
@@ -141,7 +133,7 @@ def _star(
 ) -> tuple[float, float, float, float]:
     """Observed hour angle and declination, and those of the axes, rad."""
     if len(words) < _RECORD:
-        raise PointingRunError(f"{path}:{number}: a star has {_RECORD} numbers, here are {len(words)}")
+        raise ValueError(f"{path}:{number}: a star has {_RECORD} numbers, here are {len(words)}")
     parts = [_number(path, number, each) for each in words[:_RECORD]]
     places = [
         _sexagesimal(words[k : k + 3], parts[k : k + 3], path, number, most)
@@ -152,7 +144,7 @@ def _star(
     d, dec = math.radians(places[1]), math.radians(places[3])
     azimuth, altitude = erfa.hd2ae(h, d, latitude_rad)
     if altitude <= 0:
-        raise PointingRunError(f"{path}:{number}: this star is below the horizon; check latitude and time")
+        raise ValueError(f"{path}:{number}: this star is below the horizon; check latitude and time")
     tangent = 1 / math.tan(altitude)
     h, d = (
         float(each) for each in erfa.ae2hd(azimuth, altitude + a * tangent + b * tangent**3, latitude_rad)
@@ -163,10 +155,10 @@ def _star(
 def _sexagesimal(words: list[str], parts: list[float], path: Path, number: int, most: float) -> float:
     """Whole, minutes, seconds; the sign stands before the whole, also before a 0. most: either way."""
     if not (0 <= parts[1] < 60 and 0 <= parts[2] < 60):
-        raise PointingRunError(f"{path}:{number}: {' '.join(words)} is not whole, minutes and seconds")
+        raise ValueError(f"{path}:{number}: {' '.join(words)} is not whole, minutes and seconds")
     size = abs(parts[0]) + parts[1] / 60 + parts[2] / 3600
     if size > most:
-        raise PointingRunError(f"{path}:{number}: {' '.join(words)} is beyond {most:g}")
+        raise ValueError(f"{path}:{number}: {' '.join(words)} is beyond {most:g}")
     return -size if words[0].startswith("-") else size
 
 
@@ -176,7 +168,7 @@ def _number(path: Path, number: int, text: str, most: float = math.inf) -> float
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise PointingRunError(f"{path}:{number}: {text!r} is not a number")
+        raise ValueError(f"{path}:{number}: {text!r} is not a number")
     if abs(value) > most:
-        raise PointingRunError(f"{path}:{number}: {text} is beyond {most:g}")
+        raise ValueError(f"{path}:{number}: {text} is beyond {most:g}")
     return value

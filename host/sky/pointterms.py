@@ -33,39 +33,25 @@ def _sagging(h: Array, d: Array, latitude: float) -> tuple[Array, Array]:
     return -(np.cos(latitude) * np.cos(h) * np.cos(d) + np.sin(latitude) * np.sin(d)), 0 * h
 
 
-TERMS: dict[str, Formula] = {
-    "IH": lambda h, d, _: (np.cos(d), 0 * h),
-    "ID": lambda h, d, _: (0 * h, 1 + 0 * d),
-    "CH": lambda h, d, _: (1 + 0 * h, 0 * d),
-    "NP": lambda h, d, _: (np.sin(d), 0 * h),
-    "MA": lambda h, d, _: (-np.cos(h) * np.sin(d), np.sin(h)),
-    "ME": lambda h, d, _: (np.sin(h) * np.sin(d), np.cos(h)),
-    "TF": _down,
-    "TX": _refracted,
-    "DAF": _sagging,
-    "FO": lambda h, d, _: (0 * h, np.cos(h)),
-    "HCES": lambda h, d, _: (np.sin(h) * np.cos(d), 0 * h),
-    "HCEC": lambda h, d, _: (np.cos(h) * np.cos(d), 0 * h),
-    "DCES": lambda h, d, _: (0 * h, np.sin(d)),
-    "DCEC": lambda h, d, _: (0 * h, np.cos(d)),
+_TABLE: dict[str, tuple[str, Formula]] = {
+    "IH": ("zero of hour angle", lambda h, d, _: (np.cos(d), 0 * h)),
+    "ID": ("zero of declination", lambda h, d, _: (0 * h, 1 + 0 * d)),
+    "CH": ("line of sight not perpendicular to the declination axis", lambda h, d, _: (1 + 0 * h, 0 * d)),
+    "NP": ("axes not perpendicular", lambda h, d, _: (np.sin(d), 0 * h)),
+    "MA": ("polar axis off in azimuth", lambda h, d, _: (-np.cos(h) * np.sin(d), np.sin(h))),
+    "ME": ("polar axis off in altitude", lambda h, d, _: (np.sin(h) * np.sin(d), np.cos(h))),
+    "TF": ("tube bends, sin z", _down),
+    "TX": ("refraction left over, tan z", _refracted),
+    "DAF": ("declination axis bends", _sagging),
+    "FO": ("fork bends", lambda h, d, _: (0 * h, np.cos(h))),
+    "HCES": ("hour angle encoder off its centre, sine", lambda h, d, _: (np.sin(h) * np.cos(d), 0 * h)),
+    "HCEC": ("hour angle encoder off its centre, cosine", lambda h, d, _: (np.cos(h) * np.cos(d), 0 * h)),
+    "DCES": ("declination encoder off its centre, sine", lambda h, d, _: (0 * h, np.sin(d))),
+    "DCEC": ("declination encoder off its centre, cosine", lambda h, d, _: (0 * h, np.cos(d))),
 }
 """P. T. Wallace, TPOINT: a telescope pointing analysis system (2011), section on the pointing terms."""
-TEXTS: dict[str, str] = {
-    "IH": "zero of hour angle",
-    "ID": "zero of declination",
-    "CH": "line of sight not perpendicular to the declination axis",
-    "NP": "axes not perpendicular",
-    "MA": "polar axis off in azimuth",
-    "ME": "polar axis off in altitude",
-    "TF": "tube bends, sin z",
-    "TX": "refraction left over, tan z",
-    "DAF": "declination axis bends",
-    "FO": "fork bends",
-    "HCES": "hour angle encoder off its centre, sine",
-    "HCEC": "hour angle encoder off its centre, cosine",
-    "DCES": "declination encoder off its centre, sine",
-    "DCEC": "declination encoder off its centre, cosine",
-}
+TEXTS = {name: text for name, (text, _) in _TABLE.items()}
+TERMS = {name: formula for name, (_, formula) in _TABLE.items()}
 ZEROS = ("IH", "ID")
 GEOMETRY = ("IH", "ID", "CH", "NP", "MA", "ME")
 """Every equatorial mount has these six, so every model does."""

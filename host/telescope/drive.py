@@ -1,6 +1,7 @@
 """What the axes do: one thing at a time, and tracking again when it has ended, if tracking is on."""
 
 import math
+from dataclasses import replace
 
 from bus.protocol import AxisMode, Device, Opcode, unpack_target
 from bus.protocol.scales import rate_q16
@@ -14,12 +15,11 @@ from host.sky.apparent import equatorial, star_of_apparent
 from host.sky.catalogue import Star
 from host.sky.mount import STEP_ARCSEC
 from host.sky.observed import Observed, observe
-from host.sky.pointfit import TooFewStars
+from host.sky.pointfit import TooFewStars, fit
 from host.sky.pointmodel import PointingModel
 from host.sky.pointstars import Sighting
-from host.sky.track import StarTrack
-from host.sky.tracks import DriveRate, GroundTrack, SkyTrack
-from host.sky.visibility import BelowHorizon, Unreachable
+from host.sky.tracks import DriveRate, GroundTrack, SkyTrack, StarTrack
+from host.sky.visibility import BelowHorizon, Unreachable, check_reachable
 from host.telescope.jobs import Activity, Job, Reason, Refused
 from host.telescope.observatory import Observatory
 
@@ -112,7 +112,7 @@ class Drive:
         """Go to a star and track it. A parked telescope refuses, unless `wake` has it powered up first."""
         self.unparked(wake)
         try:
-            self.observatory.check(star, self.client.now_s)
+            check_reachable(star, self.observatory, self.client.now_s)
         except BelowHorizon as error:
             raise Refused(Reason.BELOW_HORIZON, str(error)) from None
         except Unreachable as error:
@@ -171,8 +171,9 @@ class Drive:
     def set_park(self) -> None:
         """Park where the telescope points now, from now on."""
         ra, dec, _ = self.readings()
-        mount = self.observatory.mount
-        self.observatory.set_park(mount.ra.angle_rad(ra), mount.dec.angle_rad(dec))
+        about, mount = self.observatory, self.observatory.mount
+        angles = mount.ra.angle_rad(ra), mount.dec.angle_rad(dec)
+        about.mount = replace(mount, park_hour_angle_rad=angles[0], park_declination_rad=angles[1])
 
     def sync(self, star: Star) -> tuple[float, float]:
         """The telescope points at this star: align the encoders. Returns the offsets found, ″.
@@ -193,7 +194,8 @@ class Drive:
             )
         h, d, *_ = observe(star, about.site, about.clock, t_s)
         about.stars += (Sighting(hour_angle_rad=h, declination_rad=d, ra_steps=ra, dec_steps=dec),)
-        about.align(*offsets)
+        ra_scale, dec_scale = about.mount.ra.aligned(offsets[0]), about.mount.dec.aligned(offsets[1])
+        about.mount = replace(about.mount, ra=ra_scale, dec=dec_scale)
         text = f"aligned: hour angle {arcsec[0]:.1f}″, declination {arcsec[1]:.1f}″"
         self.logs.status(self.client.now_ns, "HOST", text)
         if self.activity is Activity.TRACKING:
@@ -203,14 +205,15 @@ class Drive:
     def fit_model(self) -> PointingModel:
         """The pointing model of the stars that the telescope was synchronised on; moves nothing."""
         try:
-            return self.observatory.fit()
+            about = self.observatory
+            return fit(about.stars, about.mount, about.site.latitude_rad)
         except TooFewStars as error:
             raise Refused(Reason.STATE, str(error)) from None
 
     def apply_model(self, model: PointingModel | None) -> None:
         """Point by a model, or by the encoders alone; tracking goes on where the telescope is."""
         self._still()
-        self.observatory.apply(model)
+        self.observatory.mount = replace(self.observatory.mount, model=model)
         terms = "none" if model is None else " ".join(f"{t.name}={t.arcsec:.1f}″" for t in model.terms)
         self.logs.status(self.client.now_ns, "HOST", f"pointing model: {terms}")
         if self.activity is Activity.TRACKING:

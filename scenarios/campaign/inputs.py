@@ -119,23 +119,6 @@ def _plant(path: Any, where: str, base: Document) -> Put:
     return put, str(path), number
 
 
-def _parameter(given: Any, where: str, base: Document) -> Put:
-    """A firmware parameter of a board, by number."""
-    path = ("network", "nodes", given["node"], "parameters", str(given["number"]))
-    return _at(path, int), f"{given['node']} parameter {given['number']}", None
-
-
-def _seed(_given: Any, where: str, base: Document) -> Put:
-    """The scenario's seed: crystals, encoders' fractions, noise, lost frames."""
-    return _at(("seed",), int), "seed", None
-
-
-def _start(axis: Any, where: str, base: Document) -> Put:
-    """Where an axis of the telescope stands at first, degrees."""
-    put = _at(("start", axis), lambda value: f"{float(value)!r} deg")
-    return put, f"start, {str(axis).replace('_', ' ')}", None
-
-
 def _at(path: Sequence[str], read: Callable[[Any], Any]) -> Callable[[Document, Any], None]:
     """Writes a value, as `read` makes it, at a path whose blocks need not be there."""
 
@@ -176,6 +159,19 @@ def _field(path: Any, where: str, base: Document) -> Put:
 
 
 _PUTS: dict[str, Callable[[Any, str, Document], Put]] = {
-    "plant": _plant, "parameter": _parameter, "seed": _seed, "start": _start, "fault": _fault,
+    "plant": _plant,
+    "parameter": lambda given, where, base: (
+        _at(("network", "nodes", given["node"], "parameters", str(given["number"])), int),
+        f"{given['node']} parameter {given['number']}",
+        None,
+    ),
+    "seed": lambda given, where, base: (_at(("seed",), int), "seed", None),
+    "start": lambda axis, where, base: (
+        _at(("start", axis), lambda value: f"{float(value)!r} deg"),
+        f"start, {axis.replace('_', ' ')}",
+        None,
+    ),
+    "fault": _fault,
     "field": _field,
-}  # fmt: skip
+}
+"""start: where an axis of the telescope stands at first, degrees."""

@@ -8,9 +8,8 @@ import numpy as np
 
 from host.logs.files import write_file
 from scenarios.campaign import figures, table
-from scenarios.campaign.figures import Columns, numbers
+from scenarios.campaign.figures import Columns, Influence, influence, numbers, share
 from scenarios.campaign.plan import Plan
-from scenarios.campaign.sensitivity import Influence, influence, share
 from scenarios.lab.prepare import load
 from scenarios.language.document import Document
 from scenarios.run.evaluate import KINDS

@@ -3,52 +3,21 @@
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import click
 
-from scenarios.commands.options import PATH, SECONDS, SEED, SPEED, doors, muting, network, runs
 from scenarios.commands.parts import need
 from scenarios.doors.options import DoorOptions, HostOptions, ServeOptions
 from scenarios.doors.table import ON_HOST, ON_NETWORK, asked
+from scenarios.options import PATH, doors, filled, muting
 
 
 @click.command(short_help="Run the boards in real time and open doors to them.")
-@click.argument("scenario", type=PATH, required=False)
 @doors(*ON_NETWORK, *ON_HOST)
-@runs
-@click.option("--logs", type=PATH, help="Folder of the host's four logs and of its guide log.")
-@click.option("--stars", type=PATH, help="The cameras' stars: a CSV with name, ra, dec, magnitude.")
-@click.option("--frames", type=PATH, metavar="DIR", help="Folder for the cameras' frames as FITS files.")
-@click.option("--token", help="Word that clients of other machines must know (default: made up, printed).")
-@click.option("--speed", type=SPEED, default=1.0, help="Times real time.")
-@click.option(
-    "--clock",
-    type=click.Choice(["wall", "steps"]),
-    default="wall",
-    help="steps: time stands until clients of --control step it.",
-)
-@click.option("--seed", type=SEED, help="Another seed than the scenario's.")
-@click.option("--plant", help="Plant file, or the name of one that comes with schmidt.")
-@click.option("--duration", type=SECONDS, help="End after this many seconds.")
-@network
 @muting
-@click.option(
-    "--realtime/--no-realtime",
-    default=None,
-    help="Run the ticks before all other programs (default: up to speed 1, where the system grants it).",
-)
-@click.option("--record", type=PATH, help="Record the session in this folder.")
-@click.option(
-    "--snapshots",
-    type=PATH,
-    metavar="DIR",
-    help="Take snapshots into DIR when schmidt control asks for them; runs plain.",
-)
-@click.option("--from", "begun", type=PATH, help="Go on from this snapshot; takes no SCENARIO.")
-def serve(**given: Any) -> None:
+@filled(ServeOptions)
+def serve(options: ServeOptions) -> None:
     """Pace the network in real time and open its doors; its boards answer to anyone."""
-    options = ServeOptions(**given)
     need(*_extras(options), *(() if options.record is None else ("parquet",)))
     need(*(() if options.frames is None else ("camera",)))
     if options.snapshots is not None or options.begun is not None:
@@ -69,20 +38,10 @@ def _extras(options: DoorOptions) -> Iterator[str]:
 
 
 @click.command(short_help="The host program alone, on the boards' cables.")
-@click.argument("scenario", type=PATH, required=False)
-@click.option("--usb", required=True, metavar="/dev/hidrawN|unix:PATH|can:SPEC", help="Where the gateway is.")
-@click.option(
-    "--serial", multiple=True, metavar="BOARD=PORT", help="RS232 of a board, such as AXIS_RA=/dev/ttyS0."
-)
 @doors(*ON_HOST)
-@runs
-@click.option("--token", help="Word that browsers of other machines must know (default: made up, printed).")
-@network
-@click.option("--logs", type=PATH, help="Folder of the four logs.")
-@click.option("--duration", type=SECONDS, help="End after this many seconds.")
-def host(**given: Any) -> None:
+@filled(HostOptions)
+def host(options: HostOptions) -> None:
     """The host program by itself, on the boards' cables; SCENARIO gives site, mount and date."""
-    options = HostOptions(**given)
     need(*_extras(options))
     from rich.console import Console
 

@@ -28,17 +28,13 @@ def fail(text: str, status: int, more: Iterable[str] = ()) -> NoReturn:
     sys.exit(status)
 
 
-class MissingPart(ValueError):
-    """Packages of an extra are not installed; the message is the command that installs them."""
-
-
 def need(*extras: str) -> None:
-    """Raise MissingPart unless all packages of these extras are installed."""
+    """Raise ValueError unless all packages of these extras are installed."""
     for extra in extras:
         packages = dict(_packages(extra))
         missing = [name for name in packages if find_spec(name.replace("-", "_")) is None]
         if missing:
-            raise MissingPart(_advice(missing, extra, packages))
+            raise ValueError(_advice(missing, extra, packages))
 
 
 def advice(module: str) -> str:

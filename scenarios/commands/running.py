@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from scenarios.commands.options import PATH, SECONDS, SEED, SPEED, Number, muting, network
 from scenarios.commands.parts import INTERRUPTED, UNUSABLE, fail, need
+from scenarios.options import PATH, SECONDS, SEED, SPEED, Number, muting, network
 
 if TYPE_CHECKING:
     from plant.model import PlantModel

@@ -1,6 +1,6 @@
 """`--alpaca [HOST:]PORT`: ASCOM Alpaca telescope, focuser and cameras, and their discovery."""
 
-from host.alpaca import discovery
+from host.alpaca.discovery import serve as discover
 from host.alpaca.server import Alpaca
 from scenarios.doors.clients import address, is_local, listen
 from scenarios.doors.door import counted
@@ -21,7 +21,7 @@ class AlpacaDoor(ServerDoor):
         where, port = self._address
         self.keep(self.alpaca.serve(listen(where, port)))
         try:
-            self.keep(discovery.serve(port, is_local(where)))
+            self.keep(discover(port, is_local(where)))
             self.name = self._asked
         except OSError as error:
             self.name = f"{self._asked} (no discovery: {error.strerror})"

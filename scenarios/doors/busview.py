@@ -1,16 +1,14 @@
 """What the host beside a served network sees of the emulator: its wire for the bus page, sky for cameras."""
 
 from collections import Counter, deque
-from typing import Any
 
 from bus.can.frame import Frame
 from bus.can.length import frame_bits
 from host.camera.models import Look
 from host.console.views import KEPT, BusState, FaultKind, Node
 from scenarios.doors.livenetwork import LiveNetwork
-from scenarios.doors.pipe_messages import Done, Wish
 from scenarios.lab.eye import look
-from scenarios.lab.faults.kind import FaultError, Kind, Parameter
+from scenarios.lab.faults.kind import Kind, Parameter
 
 _LOAD_NS = 1_000_000_000
 
@@ -71,24 +69,12 @@ class EmulatedBus:
             found.append((each.number, f"{each.name}, {given} for {since_s:.1f} s"))
         return found
 
-    def wish(self, wished: Wish) -> Done:
-        """Do it; refused are faults and boards that cannot be, and arguments of another kind."""
+    def wish(self, command: str) -> tuple[str, bool]:
+        """Carry out a command of the control plane; its answer, and whether it was refused."""
         try:
-            return Done(wished.number, self._do(wished.name, wished.arguments), False)
+            return self._served.command(command.split()), False
         except (ValueError, TypeError) as error:
-            return Done(wished.number, str(error), True)
-
-    def _do(self, name: str, arguments: tuple[Any, ...]) -> str:
-        match name, arguments:
-            case "start_fault", (kind, words):
-                return f"fault {self._served.start_fault(kind, **_pairs(words))} is on"
-            case "clear_fault", (number,):
-                self._served.clear_fault(number)
-                return f"fault {number} is cleared"
-            case "switch", (board, on):
-                self._served.switch(board, on)
-                return f"{board} is switched {'on' if on else 'off'}"
-        raise ValueError(f"nobody can do {name}")
+            return str(error), True
 
 
 def _template(kind: Kind) -> str:
@@ -103,17 +89,6 @@ def _said(p: Parameter) -> str:
     bounds = f", {p.low:g} to {p.high:g}" if None not in (p.low, p.high) else ""
     default = f" ({p.default} when left out)" if p.default not in (None, "") else ""
     return f"{p.name}: {p.text}{unit}{bounds}{default}"
-
-
-def _pairs(text: str) -> dict[str, str]:
-    """`name=value` words; a value with a unit is written without a blank, or with `_` for it."""
-    found = {}
-    for word in text.split():
-        name, equals, value = word.partition("=")
-        if not (name and equals and value):
-            raise FaultError(f"{word!r}: arguments are written name=value")
-        found[name] = value.replace("_", " ") if name not in ("node", "nodes", "sensor") else value
-    return found
 
 
 PERIOD_NS = 10_000_000

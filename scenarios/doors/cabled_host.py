@@ -10,8 +10,7 @@ from bus.protocol import Device
 from host.client import TICK_NS
 from host.console.heard import HeardBus
 from host.console.runs import RecordedRuns
-from host.links.ports import CanPort, HidrawPort, SerialPort, SocketPort
-from host.links.task import LinkTask
+from host.links.ports import CanPort, HidPort, LinkTask, SerialPort
 from host.serial_link import SerialLink
 from scenarios.doors.options import HostOptions
 from scenarios.doors.pc import Host, TelescopePc, dated
@@ -92,11 +91,8 @@ class CabledHost(Host):
             self.pc.journal.status(now_ns, "LINK", line)
 
 
-def _port(spec: str) -> HidrawPort | SocketPort | CanPort:
-    kind, _, rest = spec.partition(":")
-    if kind == "unix":
-        return SocketPort(rest)
-    return CanPort(rest) if kind == "can" else HidrawPort(spec)
+def _port(spec: str) -> HidPort | CanPort:
+    return CanPort(spec.removeprefix("can:")) if spec.startswith("can:") else HidPort(spec)
 
 
 def _ports(serial: tuple[str, ...]) -> dict[str, str]:

@@ -4,28 +4,24 @@ import contextlib
 import select
 import socket
 
-from host.guard import HEAD_BYTES, is_http
 from host.logs.files import reason
+from host.outside import HEAD_BYTES, is_http
 
 LOCAL = "127.0.0.1"
-
-
-class AddressError(ValueError):
-    """Text that is no address."""
 
 
 def address(text: str, option: str, ports: int = 1) -> tuple[str, int]:
     """(host, port) of `PORT`, `HOST:PORT` or `[IPv6]:PORT`; localhost when no host is given.
 
-    ports: how many in a row are needed. Raises AddressError.
+    ports: how many in a row are needed. Raises ValueError.
     """
     host, colon, number = text.rpartition(":")
     host = host.strip("[]") if colon else LOCAL
     if not number.isdecimal() or not number.isascii() or len(number) > 5 or "\0" in host or not host:
-        raise AddressError(f'{option} "{text[:80]!s}": expected [HOST:]PORT, for example 7411')
+        raise ValueError(f'{option} "{text[:80]!s}": expected [HOST:]PORT, for example 7411')
     port = int(number)
     if not 1 <= port <= 65536 - ports:
-        raise AddressError(f"{option} {port}: a port lies within 1..{65536 - ports}")
+        raise ValueError(f"{option} {port}: a port lies within 1..{65536 - ports}")
     return host, port
 
 
@@ -109,18 +105,9 @@ class Client:
 
     def deliver(self, data: bytes) -> None:
         """Hand all of it over, where nothing else waits; who does not read within a minute is hung up on."""
-        try:
-            done = self._connection.send(data)  # nearly always all of it, without asking how long it may take
-        except BlockingIOError:
-            done = 0
-        except OSError:
-            self.gone = True
-            return
-        if done == len(data):
-            return
         self._connection.settimeout(_PATIENCE_S)
         try:
-            self._connection.sendall(memoryview(data)[done:])
+            self._connection.sendall(data)
         except OSError:
             self.gone = True
         self._connection.setblocking(False)

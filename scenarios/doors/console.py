@@ -7,7 +7,7 @@ from host.console.server import Consoles
 from host.sky.listed import VARIABLE, listed
 from scenarios.doors.clients import address, is_local, listen
 from scenarios.doors.control import TOKEN_VARIABLE
-from scenarios.doors.door import DoorError, counted
+from scenarios.doors.door import counted
 from scenarios.doors.pc import Host, ServerDoor
 
 
@@ -23,11 +23,11 @@ class ConsoleDoor(ServerDoor):
         try:
             runs.folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise DoorError(f"--runs {runs.folder}: cannot be made: {error.strerror}") from None
+            raise OSError(f"--runs {runs.folder}: cannot be made: {error.strerror}") from None
         try:
             listed()
         except ValueError as error:
-            raise DoorError(f"{VARIABLE}: {error}") from None
+            raise OSError(f"{VARIABLE}: {error}") from None
         self._consoles = Consoles(host.pc.telescope, host.bus, runs, made)
 
     def open(self) -> None:
@@ -35,7 +35,7 @@ class ConsoleDoor(ServerDoor):
         try:
             self.keep(self._consoles.serve(listen(self.host, self.port)))
         except OSError as error:
-            raise DoorError(f"{self.name}: {error.strerror or error}") from None
+            raise OSError(f"{self.name}: {error.strerror or error}") from None
 
     def poll(self, now_ns: int) -> None:
         """What the pages asked for; a server that broke is noticed here."""

@@ -12,10 +12,6 @@ def counted(*told: tuple[int, str]) -> str:
     return ", ".join(f"{count} {what}" for count, what in told if count)
 
 
-class DoorError(OSError):
-    """A door that cannot be opened, or is broken; one line. It is reported and tried again."""
-
-
 class Door(Protocol):
     """A way in from outside. `schmidt serve` holds any number and knows nothing else of them.
 

@@ -3,7 +3,7 @@
 import os
 from struct import Struct
 
-from scenarios.doors.door import DoorError, counted
+from scenarios.doors.door import counted
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.usb import DESCRIPTOR, NAME, PRODUCT, VENDOR, VERSION, UsbPlug, out_report
 
@@ -46,7 +46,7 @@ class UhidDoor:
         except OSError as error:
             self.close()
             hint = "; --hid unix:PATH works without it" if isinstance(error, FileNotFoundError) else ""
-            raise DoorError(f"--hid uhid: {self._device}: {error.strerror}{hint}") from None
+            raise OSError(f"--hid uhid: {self._device}: {error.strerror}{hint}") from None
         self._plug = self._served.usb.plug(self.name)
 
     def poll(self, _now_ns: int) -> None:

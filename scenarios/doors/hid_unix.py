@@ -11,7 +11,7 @@ from pathlib import Path
 from boards.silicon.hid import REPORT_BYTES
 from host.logs.files import reason
 from scenarios.doors.clients import Client, Clients
-from scenarios.doors.door import DoorError, counted
+from scenarios.doors.door import counted
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.usb import UsbPlug, out_report
 
@@ -40,7 +40,7 @@ class UnixDoor:
             listener.setblocking(False)
         except (OSError, ValueError) as error:
             listener.close()
-            raise DoorError(f"--hid unix: {self._path}: {reason(error)}") from None
+            raise OSError(f"--hid unix: {self._path}: {reason(error)}") from None
         self._clients.listen(listener)
         self._plug = self._served.usb.plug(self.name)
 
@@ -51,14 +51,14 @@ class UnixDoor:
         except FileNotFoundError:
             return
         if not stat.S_ISSOCK(mode):
-            raise DoorError("exists and is no socket")
+            raise OSError("exists and is no socket")
         with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as probe:
             try:
                 probe.connect(str(self._path))
             except ConnectionRefusedError:
                 self._path.unlink()
                 return
-        raise DoorError("another server listens there")
+        raise OSError("another server listens there")
 
     def poll(self, _now_ns: int) -> None:
         """Reports both ways; while the gateway is busy nothing is read, so that writers wait."""

@@ -13,10 +13,9 @@ from host.client import TICK_NS
 from host.console.views import BusState
 from scenarios.doors import pipe_messages as messages
 from scenarios.doors.busview import EmulatedBus, Looks
-from scenarios.doors.door import DoorError
 from scenarios.doors.lines import Feed
 from scenarios.doors.livenetwork import LiveNetwork
-from scenarios.doors.options import DoorOptions
+from scenarios.doors.options import ServeOptions
 from scenarios.doors.pc import dated
 from scenarios.doors.usb import UsbFull, UsbPlug
 from scenarios.lab.session import log_headers
@@ -37,7 +36,7 @@ class HostProcess:
     Its program is started at once, as it has much to import; `open` waits until it has opened its doors.
     """
 
-    def __init__(self, served: LiveNetwork, options: DoorOptions, say: Callable[[str], None]) -> None:
+    def __init__(self, served: LiveNetwork, options: ServeOptions, say: Callable[[str], None]) -> None:
         self.name = "the host"
         self._served = served
         self._scenario = dated(served.scenario)  # once: the next process has the same sky
@@ -86,7 +85,7 @@ class HostProcess:
         self._asked_s = monotonic()
 
     def open(self) -> None:
-        """Have it open its doors: wait for that the first time, later only start it. Raises DoorError."""
+        """Have it open its doors: wait for that the first time, later only start it. Raises OSError."""
         if self._pipe is None:
             self._start()
         self._plug = self._served.usb.plug(self.name)
@@ -95,7 +94,7 @@ class HostProcess:
             end_s = monotonic() + _START_S
             while not self._ready:
                 if not self._pipe.poll(max(0.0, end_s - monotonic())):
-                    raise DoorError(f"{self.name} did not start within {_START_S:g} s")
+                    raise OSError(f"{self.name} did not start within {_START_S:g} s")
                 self._hear()
             self._once = True
 
@@ -113,7 +112,7 @@ class HostProcess:
             if monotonic() - self._asked_s > (_SILENT_S if self._ready else _START_S):
                 if self._process is not None:
                     self._process.kill()
-                raise DoorError("it does not answer")
+                raise OSError("it does not answer")
             return
         if self._served.steps is not None and now_ns - self._sent_ns < TICK_NS:
             return  # it does nothing between its ticks, and nobody waits for it
@@ -136,7 +135,7 @@ class HostProcess:
         self._record(False)
         if pipe is not None:
             with pipe, suppress(OSError, EOFError):
-                pipe.send(messages.Close())
+                pipe.send(("close",))
                 end_s = monotonic() + _END_S
                 while pipe.poll(max(0.0, end_s - monotonic())):
                     said = pipe.recv()
@@ -165,29 +164,30 @@ class HostProcess:
         try:
             said = self._pipe.recv()
         except (EOFError, OSError):
-            raise DoorError("its process has ended") from None
-        if isinstance(said, messages.Report) and self._plug is not None:
-            with suppress(UsbFull):  # as if it were lost on the way
-                self._plug.write(self._served.now_ns, said.data)
-        elif isinstance(said, messages.Taken):
-            self._waiting, self._watching, self.doors = False, said.watching, said.doors
-            self._looks.wanted = said.looking
-            self._record(said.recording)
-        elif isinstance(said, messages.Wish):
-            self._send(self._bus.wish(said))
-        elif isinstance(said, messages.Said):
-            self._say(said.text)
-        elif isinstance(said, messages.Opened):
-            if said.error:
-                raise DoorError(said.error)
-            self._ready, self.doors = True, said.doors
+            raise OSError("its process has ended") from None
+        match said:
+            case messages.Taken():
+                self._waiting, self._watching, self.doors = False, said.watching, said.doors
+                self._looks.wanted = said.looking
+                self._record(said.recording)
+            case "report", data if self._plug is not None:
+                with suppress(UsbFull):  # as if it were lost on the way
+                    self._plug.write(self._served.now_ns, data)
+            case "wish", number, command:
+                self._send(("done", number, *self._bus.wish(command)))
+            case "said", text:
+                self._say(text)
+            case "opened", doors, error:
+                if error:
+                    raise OSError(error)
+                self._ready, self.doors = True, doors
 
     def _send(self, message: object) -> None:
         try:
             if self._pipe is not None:
                 self._pipe.send(message)
         except OSError:
-            raise DoorError("its process has ended") from None
+            raise OSError("its process has ended") from None
 
     def _bus_state(self) -> BusState | None:
         now_s = monotonic()

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
-from struct import Struct
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from bus.can.frame import Frame
+from bus.can.candump import line, parsed
+from bus.can.frame import Frame, check
 from bus.outside.node import OutsideNode
 from bus.outside.pacer import Pacer, Punctuality
 from bus.time import EventQueue
@@ -21,10 +21,6 @@ if TYPE_CHECKING:
     from scenarios.doors.recording import Recording
     from scenarios.doors.snapshots import Standing
     from scenarios.doors.steps import Steps
-
-
-class EntryError(RuntimeError):
-    """Somebody tried to enter while simulated time was running: a bug in a door."""
 
 
 class Entry:
@@ -43,13 +39,13 @@ class Entry:
     def register(self, kind: str, apply: Callable[[bytes], None]) -> None:
         """Let `kind` enter: `apply(data)` puts it into the network, at the present. One registration each."""
         if kind in self._apply:
-            raise EntryError(f"{kind} is registered twice")
+            raise RuntimeError(f"{kind} is registered twice")
         self._apply[kind] = apply
 
     def enter(self, kind: str, data: bytes) -> None:
         """Something comes in, now."""
         if self.running:
-            raise EntryError(f"{kind} would enter in the middle of a slice")
+            raise RuntimeError(f"{kind} would enter in the middle of a slice")
         if self._journal is not None:
             self._journal.write(self._queue.now_ns, kind, data)
         self.count += 1
@@ -67,19 +63,32 @@ DEBUG = "debug"
 FAULT = "fault"
 """Kind of entry that starts or clears a fault: `start NAME {arguments}` or `clear NUMBER`."""
 
-_head = Struct("<IB")
-_EXTENDED, _REMOTE = 1, 2
+
+def frame_text(frame: Frame) -> str:
+    """A frame as candump writes it: `211#1101000000000000`."""
+    return line(0, frame).rpartition(" ")[2]
 
 
-def pack_frame(frame: Frame) -> bytes:
-    """A frame in the journal: identifier u32, flags u8 (1 extended, 2 remote), data."""
-    return _head.pack(frame.identifier, _EXTENDED * frame.extended | _REMOTE * frame.remote) + frame.data
+def frame_of(text: str) -> Frame:
+    """The frame of such a text; raises ValueError."""
+    found = parsed(f"(0.000000) can0 {text}")
+    if found is None:
+        raise ValueError("a frame is ID#DATA, such as 011#1105")
+    check(found[1])
+    return found[1]
 
 
-def unpack_frame(data: bytes) -> Frame:
-    """The frame of such bytes."""
-    identifier, flags = _head.unpack_from(data)
-    return Frame(identifier, data[_head.size :], bool(flags & _EXTENDED), bool(flags & _REMOTE))
+USAGE = {
+    "power": "power BOARD on|off",
+    "fault": "fault list | kinds | start NAME ARGUMENT=VALUE ... | clear NUMBER",
+}
+
+
+def _argument(word: str) -> tuple[str, str]:
+    name, _, value = word.partition("=")
+    if not (name and value):
+        raise ValueError(f"{word!r}: arguments are written name=value")
+    return name, value if name in ("node", "nodes", "sensor") else value.replace("_", " ")
 
 
 class LiveNetwork:
@@ -130,19 +139,19 @@ class LiveNetwork:
             name = f"outside {index}" if index else "outside"
             self.nodes[kind] = OutsideNode(self.network.queue, self.network.wire, name)
         node = self.nodes[kind]
-        self.entry.register(kind, lambda data: node.arrive(unpack_frame(data)))
+        self.entry.register(kind, lambda data: node.arrive(frame_of(data.decode())))
         return node
 
     def frame(self, index: int, frame: Frame) -> None:
         """A frame for the wire, by the node of this number."""
-        self.entry.enter(f"can{index}", pack_frame(frame))
+        self.entry.enter(f"can{index}", frame_text(frame).encode())
 
     def stop(self) -> None:
         """End the serving with the next slice."""
         self.ending = True
 
     def switch(self, board: str, on: bool) -> None:
-        """Switch the supply of a board, by name; raises NetworkError for one there is not."""
+        """Switch the supply of a board, by name; raises ValueError for one there is not."""
         self.network.board(board)
         self.entry.enter(BOARD, f"{board} {'on' if on else 'off'}".encode())
 
@@ -178,6 +187,20 @@ class LiveNetwork:
             return
         name, _, arguments = rest.partition(" ")
         self.faults.start(name, **json.loads(arguments))
+
+    def command(self, words: Sequence[str]) -> str:
+        """Carry out `power BOARD on|off`, `fault start NAME ARGUMENT=VALUE ...` or `fault clear NUMBER`; its
+        answer. A value has no blank, or `_` for one. Raises ValueError with one line."""
+        match words:
+            case ["power", board, "on" | "off" as state]:
+                self.switch(board, state == "on")
+                return f"{board} {state}"
+            case ["fault", "start", name, *pairs]:
+                return f"fault {self.start_fault(name, **dict(map(_argument, pairs)))} is on"
+            case ["fault", "clear", number] if number.isdecimal():
+                self.clear_fault(int(number))
+                return f"fault {number} cleared"
+        raise ValueError(USAGE.get(words[0], f"no command {words[0]!r}"))
 
     def run_until(self, t_ns: int) -> None:
         """Let simulated time go on to `t_ns`, as fast as it goes."""

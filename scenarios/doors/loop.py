@@ -15,7 +15,7 @@ from time import perf_counter
 from rich.console import Console
 
 from scenarios.doors.control import ControlDoor
-from scenarios.doors.door import DoorError, Keeper, counted
+from scenarios.doors.door import Keeper, counted
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.recording import Recording
 
@@ -30,7 +30,7 @@ _THREADS = Path("/proc/self/task")
 def first(asked: bool = True) -> Iterator[str]:
     """This process before all ordinary programs; the line that says so.
 
-    Where the system has no such class or does not grant it, this raises DoorError. If nobody asked for it,
+    Where the system has no such class or does not grant it, this raises OSError. If nobody asked for it,
     the line says what to do.
     """
     said = AHEAD
@@ -43,12 +43,12 @@ def first(asked: bool = True) -> Iterator[str]:
                 before[thread] = policy & ~os.SCHED_RESET_ON_FORK
     except AttributeError:
         if asked:
-            raise DoorError("--realtime: this system has no real-time scheduling for programs") from None
+            raise OSError("--realtime: this system has no real-time scheduling for programs") from None
         said = "ticks run among other programs; busy ones make them late, so end those"
     except OSError:
         _back(before)
         if asked:
-            raise DoorError(f"--realtime: not granted; {NOT_GRANTED}") from None
+            raise OSError(f"--realtime: not granted; {NOT_GRANTED}") from None
         said = f"ticks run among other programs; if busy ones make them late, {NOT_GRANTED}"
     try:
         yield said

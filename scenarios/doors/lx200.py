@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from scenarios.doors.clients import address
-from scenarios.doors.door import DoorError, counted
+from scenarios.doors.door import counted
 from scenarios.doors.pc import Host, ServerDoor
 
 
@@ -27,7 +27,7 @@ class Lx200Door(ServerDoor):
                 server = self._host.outside.run(self._lx200.serve_tcp(*self._address, self._come))
                 self.keep(server.serve_forever())
         except OSError as error:
-            raise DoorError(f"{self.name}: {error.strerror or error}") from None
+            raise OSError(f"{self.name}: {error.strerror or error}") from None
 
     def state(self) -> str:
         """How many came; of a pseudo-terminal how often somebody was heard after a silence."""

@@ -3,11 +3,11 @@
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
-from scenarios.doors.clients import AddressError, address
+from scenarios.doors.clients import address
 from scenarios.doors.door import Door
 from scenarios.doors.host_door import HostProcess
 from scenarios.doors.livenetwork import LiveNetwork
-from scenarios.doors.options import DoorOptions, OptionError, ServeOptions
+from scenarios.doors.options import ServeOptions
 from scenarios.doors.table import ON_HOST, ON_NETWORK, DoorKind, asked, doors_on, named
 
 
@@ -33,7 +33,7 @@ def attached(name: str, boards: Sequence[str]) -> Attached:
     count = len(boards) if several else 1
     try:
         host, port = address(rest if several else spec, option, count)
-    except AddressError:  # reported by the door itself
+    except ValueError:  # reported by the door itself
         return Attached(spec)
     at = f"[{host}]:{port}" if ":" in host else f"{host}:{port}"
     last = f"port {port + count - 1}, {boards[-1]}"
@@ -41,7 +41,7 @@ def attached(name: str, boards: Sequence[str]) -> Attached:
 
 
 def check_ports(names: Sequence[str], boards: Sequence[str]) -> None:
-    """Raise OptionError for two doors that want one TCP port."""
+    """Raise ValueError for two doors that want one TCP port."""
     taken: dict[tuple[str, int], str] = {}
     for name in names:
         _, host, ports = attached(name, boards)
@@ -49,24 +49,24 @@ def check_ports(names: Sequence[str], boards: Sequence[str]) -> None:
             other = taken.setdefault((host, port), name)
             if other != name:
                 last = attached(other, boards).ports[-1]
-                raise OptionError(f"{name}: {other} takes the ports up to {last}; give one of them another")
+                raise ValueError(f"{name}: {other} takes the ports up to {last}; give one of them another")
 
 
-def check(options: DoorOptions) -> None:
-    """Raise OptionError unless there is a door at all, and one to step by."""
+def check(options: ServeOptions) -> None:
+    """Raise ValueError unless there is a door at all, and one to step by."""
     if not any(options.asked.values()):
         doors = named((*ON_NETWORK, *ON_HOST), "or")
-        raise OptionError(f"serve needs a door: {doors} (see schmidt serve -h)")
+        raise ValueError(f"serve needs a door: {doors} (see schmidt serve -h)")
     for option, given in (("--stars", options.stars), ("--frames", options.frames)):
         if given is not None and not options.asked.get("alpaca"):
-            raise OptionError(f"{option} needs --alpaca, which has the cameras")
+            raise ValueError(f"{option} needs --alpaca, which has the cameras")
     if options.logs is not None and not any(asked(ON_HOST, options)):
-        raise OptionError(f"--logs is the host's: it needs {named(ON_HOST, 'or')}")
-    if isinstance(options, ServeOptions) and options.clock == "steps" and not options.asked.get("control"):
-        raise OptionError("--clock steps needs --control: nobody else could step")
+        raise ValueError(f"--logs is the host's: it needs {named(ON_HOST, 'or')}")
+    if options.clock == "steps" and not options.asked.get("control"):
+        raise ValueError("--clock steps needs --control: nobody else could step")
 
 
-def make_doors(options: DoorOptions, live: LiveNetwork, say: Callable[[str], None] = print) -> list[Door]:
+def make_doors(options: ServeOptions, live: LiveNetwork, say: Callable[[str], None] = print) -> list[Door]:
     """The doors, closed. Their nodes on the wire are there from now on, in this order. say: takes lines for
     the user.
 
@@ -78,7 +78,7 @@ def make_doors(options: DoorOptions, live: LiveNetwork, say: Callable[[str], Non
     if not wanted:
         return doors
     if "GATEWAY" not in live.network.boards:
-        raise OptionError(f"{named(ON_HOST, 'and')} need the gateway: take --network lab or final")
+        raise ValueError(f"{named(ON_HOST, 'and')} need the gateway: take --network lab or final")
     for option, spec in wanted:
         if not spec.startswith("pty:"):
             address(spec, option)  # said before anything is started

@@ -12,9 +12,8 @@ from host.client import TICK_NS, Client
 from host.console.runs import RecordedRuns
 from host.console.views import BusView
 from host.link import HidLink
-from host.logs.ascii import AsciiLogs, rotating
 from host.logs.clientguiding import ClientGuiding
-from host.logs.journal import Journal
+from host.logs.journal import AsciiLogs, Journal, RotatingFile
 from host.logs.sensors import readings
 from host.lx200.server import Lx200
 from host.outside import Outside, Service
@@ -55,7 +54,7 @@ class TelescopePc:
         self.clock = scenario.clock
         if logs is not None:
             logs.mkdir(parents=True, exist_ok=True)
-        self.files = None if logs is None else AsciiLogs(logs, self.clock.iso, rotating)
+        self.files = None if logs is None else AsciiLogs(logs, self.clock.iso, RotatingFile)
         self.journal = Journal(self.files)
         self.observatory = Observatory(scenario.site, self.clock, scenario.mount, scenario.horizon_rad)
         self.link = HidLink(send)

@@ -2,16 +2,21 @@
 
 The host has a process of its own, as it has on the telescope. Browsers and HTTP would otherwise hold Python's
 lock when a tick is due. Nothing but these values crosses; the emulator's side is `host_door`, the host's
-`piped_host`.
+`piped_host`. Beside the records below, tuples of a word and what belongs to it:
+
+- from the host: `report` and 64 bytes for the gateway; `said` and a line for the user; `wish`, its number and
+  a command of the control plane; `opened` (doors, error), once: the doors are open, or why not;
+- to the host: `done`, the wish's number, what became of it, whether it was refused; `close`: hang up, write
+  the logs, answer `Taken` and end.
 """
 
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from bus.protocol import Device
 from host.camera.models import Look
 from host.console.views import BusState, FaultKind
-from scenarios.doors.options import DoorOptions
+from scenarios.doors.options import ServeOptions
 from scenarios.language.model import Scenario
 
 
@@ -20,7 +25,7 @@ class Settings(NamedTuple):
     of the axis logs; `scenario` has a date."""
 
     scenario: Scenario
-    options: DoorOptions
+    options: ServeOptions
     boards: list[str]
     devices: tuple[Device, ...]
     headers: dict[str, dict[str, str]]
@@ -47,45 +52,6 @@ class Taken(NamedTuple):
     recording: bool
     looking: bool
     doors: list[tuple[str, str]]
-
-
-class Report(NamedTuple):
-    """From the host: a USB report for the gateway."""
-
-    data: bytes
-
-
-class Said(NamedTuple):
-    """From the host: a line for the user, such as a door that broke."""
-
-    text: str
-
-
-class Wish(NamedTuple):
-    """From the host: do something to the emulator (a name in `EmulatedBus`); answered by `Done`."""
-
-    number: int
-    name: str
-    arguments: tuple[Any, ...]
-
-
-class Done(NamedTuple):
-    """To the host: what became of a wish; bad: it was refused, and why."""
-
-    number: int
-    text: str
-    bad: bool
-
-
-class Opened(NamedTuple):
-    """From the host, once: doors are open, or why not."""
-
-    doors: list[tuple[str, str]]
-    error: str = ""
-
-
-class Close(NamedTuple):
-    """To the host: hang up, write the logs, answer `Taken` and end."""
 
 
 def program() -> str:

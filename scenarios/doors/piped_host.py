@@ -16,18 +16,18 @@ from host.console.runs import RecordedRuns
 from host.console.views import BusState, FaultKind
 from host.logs.clientguiding import ClientGuiding
 from scenarios.doors.door import counted
-from scenarios.doors.options import DoorOptions
+from scenarios.doors.options import ServeOptions
 from scenarios.doors.pc import Host, TelescopePc
-from scenarios.doors.pipe_messages import Close, Done, Opened, Report, Said, Settings, Slice, Taken, Wish
+from scenarios.doors.pipe_messages import Settings, Slice, Taken
 from scenarios.language.model import Scenario
 
 _LOOKED_S = 1.0  # Pages refresh four times a second; when nobody has asked for so long, nobody looks.
 
 
 class BusMirror:
-    """A `BusView`. boards: whose supply can be switched. send: takes a `Wish`, from any thread."""
+    """A `BusView`. boards: whose supply can be switched. send: takes a wish, from any thread."""
 
-    def __init__(self, boards: list[str], kinds: list[FaultKind], send: Callable[[Wish], None]) -> None:
+    def __init__(self, boards: list[str], kinds: list[FaultKind], send: Callable[[object], None]) -> None:
         self.boards = tuple(boards)
         self.kinds = kinds
         self._send = send
@@ -48,34 +48,34 @@ class BusMirror:
 
     def start_fault(self, name: str, arguments: str) -> Future[str]:
         """Wished for; the next slice does it."""
-        return self._wish("start_fault", name, arguments)
+        return self._wish(f"fault start {name} {arguments}")
 
     def clear_fault(self, number: int) -> Future[str]:
         """Wished for; the next slice does it."""
-        return self._wish("clear_fault", number)
+        return self._wish(f"fault clear {number}")
 
     def switch(self, board: str, on: bool) -> None:
         """Wished for; the next slice does it."""
-        self._wish("switch", board, on)
+        self._wish(f"power {board} {'on' if on else 'off'}")
 
-    def done(self, answer: Done) -> None:
+    def done(self, number: int, text: str, refused: bool) -> None:
         """What became of a wish."""
-        future = self._open.pop(answer.number, None)
+        future = self._open.pop(number, None)
         if future is None or not future.set_running_or_notify_cancel():
             return  # whoever wished has gone
-        if answer.bad:
-            future.set_exception(ValueError(answer.text))
+        if refused:
+            future.set_exception(ValueError(text))
         else:
-            future.set_result(answer.text)
+            future.set_result(text)
 
-    def _wish(self, name: str, *arguments: Any) -> Future[str]:
+    def _wish(self, command: str) -> Future[str]:
         number = next(self._numbers)
         future = self._open[number] = Future()
-        self._send(Wish(number, name, arguments))
+        self._send(("wish", number, command))
         return future
 
 
-def cameras(scenario: Scenario, options: DoorOptions, guiding: ClientGuiding | None) -> tuple[Camera, ...]:
+def cameras(scenario: Scenario, options: ServeOptions, guiding: ClientGuiding | None) -> tuple[Camera, ...]:
     """By Alpaca's number, where there is an Alpaca door. scenario: one with a date. guiding: sees the frames.
     Raises ValueError for a catalogue that cannot be used."""
     if not options.asked.get("alpaca"):
@@ -110,17 +110,17 @@ class PipedHost(Host):
         pc.cameras = cameras(settings.scenario, options, pc.guiding)
         self._mirror = BusMirror(settings.boards, settings.kinds, self._send)
         runs = RecordedRuns(options.runs, settings.headers, pc.journal)
-        super().__init__(pc, self._mirror, runs, options, lambda text: self._send(Said(text)))
+        super().__init__(pc, self._mirror, runs, options, lambda text: self._send(("said", text)))
 
     def run(self) -> None:
         """Until told to close, or nobody is there any more."""
         try:
             self.open()
         except (OSError, ValueError) as error:
-            self._send(Opened([], str(error)))
+            self._send(("opened", [], str(error)))
             self.close()
             return
-        self._send(Opened(self._told()))
+        self._send(("opened", self._told(), ""))
         try:
             while not self._pipe.poll(_LOOK_S) or self._take(self._pipe.recv()):
                 self.pc.poll(self._now_ns)
@@ -132,7 +132,7 @@ class PipedHost(Host):
         self.close()
         self._send(Taken(False, False, False, told))
 
-    def _take(self, message: object) -> bool:
+    def _take(self, message: tuple[Any, ...]) -> bool:
         """A message; False when it is the last."""
         if isinstance(message, Slice):
             self._now_ns = message.now_ns
@@ -148,9 +148,9 @@ class PipedHost(Host):
             self.pc.poll(self._now_ns)
             looking = any(camera.looking for camera in self.pc.cameras)
             self._send(Taken(self._mirror.watching, self.runs.recording, looking, self._told()))
-        elif isinstance(message, Done):
-            self._mirror.done(message)
-        return not isinstance(message, Close)
+        elif message[0] == "done":
+            self._mirror.done(*message[1:])
+        return bool(message[0] != "close")
 
     def _told(self) -> list[tuple[str, str]]:
         now = self.pc.telescope.snapshot
@@ -159,7 +159,7 @@ class PipedHost(Host):
         return [("the host", state), *((each.door.name, each.door.state()) for each in self.keepers)]
 
     def _report(self, _t_ns: int, report: bytes) -> None:
-        self._send(Report(report))
+        self._send(("report", report))
 
     def _send(self, message: object) -> None:
         with self._sending, suppress(ConnectionError):  # an emulator that has gone is seen when it is heard
@@ -177,6 +177,6 @@ def main(number: int) -> None:
             side = PipedHost(pipe, settings)
         except (OSError, ValueError) as error:
             with suppress(ConnectionError):
-                pipe.send(Opened([], str(error)))
+                pipe.send(("opened", [], str(error)))
             return
         side.run()

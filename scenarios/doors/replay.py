@@ -2,7 +2,6 @@
 
 import json
 import re
-import struct
 from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
@@ -16,22 +15,19 @@ from scenarios.doors.recording import BEGUN, ENTERED, PLANT, SCENARIO, SESSION, 
 from scenarios.doors.snapshots import standing
 from scenarios.lab.prepare import chosen
 from scenarios.lab.snapshot.file import read
+from scenarios.language.document import Document
+from scenarios.language.validate import check, schema
 from scenarios.progress import Show, shown
 
 _STEP_NS = 1_000_000_000  # Simulated time between two looks at what is left.
-_LAST_NS = 10_000_000_000_000_000
-"""Longest session, as `scenarios.language.units` has it for a run: four months."""
-
-
-class ReplayError(ValueError):
-    """A folder that is no recorded session; one line."""
+_SCHEMA_FILE = Path(__file__).with_name("session.schema.json")
 
 
 def replay(folder: Path, out: Path) -> tuple[str, str | None]:
     """Run the session in `folder` again into `out`; returns both digests (None: it was never closed)."""
     facts = _facts(folder)
     if out.resolve() == folder.resolve():
-        raise ReplayError(f"{out}: a session is not replayed onto itself; give another --out")
+        raise ValueError(f"{out}: a session is not replayed onto itself; give another --out")
     begun = folder / BEGUN if facts.get("begun") else None
     if begun is not None:
         stood = standing(read(begun))
@@ -79,14 +75,14 @@ def _enter(served: LiveNetwork, folder: Path, facts: dict[str, Any], after: int 
     with shown("replaying", end_ns, begun=begun_ns) as show:
         for t_ns, kind, data in islice(_entries(folder / ENTERED), after, None):
             if t_ns < served.now_ns:
-                raise ReplayError(f"{folder / ENTERED}: {t_ns} {kind}: is earlier than the time reached")
+                raise ValueError(f"{folder / ENTERED}: {t_ns} {kind}: is earlier than the time reached")
             if "end_ns" in facts and t_ns > end_ns:
-                raise ReplayError(f"{folder / ENTERED}: {t_ns} {kind}: is after the session's end")
+                raise ValueError(f"{folder / ENTERED}: {t_ns} {kind}: is after the session's end")
             _go(served, t_ns, end_ns, show)
             try:
                 served.entry.enter(kind, data)
-            except (KeyError, ValueError, struct.error) as error:
-                raise ReplayError(f"{folder / ENTERED}: {t_ns} {kind}: {error}") from None
+            except (KeyError, ValueError) as error:
+                raise ValueError(f"{folder / ENTERED}: {t_ns} {kind}: {error}") from None
         _go(served, max(t_ns, end_ns), end_ns, show)
 
 
@@ -98,20 +94,12 @@ def _go(served: LiveNetwork, t_ns: int, end_ns: int, show: Show) -> None:
 
 
 def _facts(folder: Path) -> dict[str, Any]:
+    file = folder / SESSION
     try:
-        facts: dict[str, Any] = json.loads(read_text(folder / SESSION))
-        wanted = {"scenario": bool, "seed": int, "kinds": list}
-        other = {"end_ns": 0, "snapshots": {}, "network": ""}
-        if not (
-            all(isinstance(facts[key], kind) for key, kind in wanted.items())
-            and all(isinstance(facts.get(key) or none, type(none)) for key, none in other.items())
-            and all(isinstance(each, str) for each in facts["kinds"])
-            and 0 <= (facts.get("end_ns") or 0) <= _LAST_NS
-            and all({"t_ns", "entries"} <= set(each) for each in (facts.get("snapshots") or {}).values())
-        ):
-            raise ValueError("fields are missing, or of another type")
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise ReplayError(f"{folder}: no recorded session ({SESSION}): {reason(error)}") from None
+        facts: dict[str, Any] = json.loads(read_text(file))
+        check(Document(file, facts, {}), schema(_SCHEMA_FILE))
+    except (OSError, ValueError) as error:
+        raise ValueError(f"{folder}: no recorded session ({SESSION}): {reason(error)}") from None
     return facts
 
 
@@ -124,8 +112,8 @@ def _entries(file: Path) -> Iterator[tuple[int, str, bytes]]:
                     t_ns, kind, data = line.rstrip("\n").split(" ")
                     yield int(t_ns), kind, bytes.fromhex(data)
                 except ValueError:
-                    raise ReplayError(f"{file}:{number}: not an entry: {line[:60]!r}") from None
+                    raise ValueError(f"{file}:{number}: not an entry: {line[:60]!r}") from None
     except OSError as error:
-        raise ReplayError(f"{file}: {error.strerror}") from None
+        raise ValueError(f"{file}: {error.strerror}") from None
     except TextError as error:
-        raise ReplayError(f"{file}: {error}") from None
+        raise ValueError(f"{file}: {error}") from None

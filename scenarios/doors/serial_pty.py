@@ -11,7 +11,7 @@ from pathlib import Path
 
 from boards.core.debug import DebugPort
 from host.logs.files import reason
-from scenarios.doors.door import DoorError, counted
+from scenarios.doors.door import counted
 from scenarios.doors.lines import Feed
 from scenarios.doors.livenetwork import LiveNetwork
 
@@ -51,7 +51,7 @@ class PtyPort:
         if self.link.is_symlink():
             self.link.unlink()  # of an earlier run
         elif self.link.exists():
-            raise DoorError(f"{self.link} exists and is no symbolic link; another folder?")
+            raise OSError(f"{self.link} exists and is no symbolic link; another folder?")
         self.link.symlink_to(target)
 
     def poll(self, now_ns: int, state: int) -> None:
@@ -122,9 +122,9 @@ class PtyDoor:
                 self.ports.append(port)
         except (OSError, ValueError) as error:
             self.close()
-            if isinstance(error, DoorError):
+            if isinstance(error, OSError) and error.errno is None:  # it says all
                 raise
-            raise DoorError(f"{self.option.rstrip(': ')}: {self._folder}: {reason(error)}") from None
+            raise OSError(f"{self.option.rstrip(': ')}: {self._folder}: {reason(error)}") from None
 
     def _names(self) -> Iterable[str]:
         """Boards that have a port."""

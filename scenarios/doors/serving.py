@@ -21,7 +21,7 @@ from scenarios.doors.parking import interrupts, park
 from scenarios.doors.recording import Recording
 from scenarios.doors.snapshots import Snapshots, standing
 from scenarios.doors.steps import Steps
-from scenarios.lab.muted import Feed, FeedError
+from scenarios.lab.muted import Feed
 from scenarios.lab.prepare import chosen
 from scenarios.lab.snapshot.file import read
 from scenarios.lab.wiring import wire
@@ -41,7 +41,7 @@ def serve(options: ServeOptions) -> int:
     checked_speed(options.speed)
     check(options)
     if options.muted is not None and (options.record is not None or options.snapshots is not None):
-        raise FeedError(
+        raise ValueError(
             "--mute with --record or --snapshots: frames fed from a log are not recorded; leave one out"
         )
     stood = None if options.begun is None else standing(read(options.begun))

@@ -6,9 +6,8 @@ own process (sockets, threads and generators), what is recorded.
 """
 
 import re
-from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from bus.can.candump import CandumpWriter
 from bus.outside.door import Door as Fence
@@ -38,8 +37,7 @@ _OF_A_RUN = ("session", "can", "recorder", "usb", "truth", "chain", *(device.nam
 """What the snapshot of a run names as outside of it (`snapshot/run.py`)."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Standing:
+class Standing(NamedTuple):
     """A network as it stood. entries: how many inputs the session had had. nodes: of the doors to CAN, by
     their kinds of entry. usb: the cable with what is on it."""
 
@@ -47,9 +45,9 @@ class Standing:
     model: PlantModel
     network: Network
     faults: Faults
-    entries: int = 0
-    usb: Usb | None = None
-    nodes: dict[str, OutsideNode] = field(default_factory=dict)
+    entries: int
+    usb: Usb | None
+    nodes: dict[str, OutsideNode]
 
 
 def standing(found: dict[str, Any]) -> Standing:
@@ -59,21 +57,6 @@ def standing(found: dict[str, Any]) -> Standing:
     """
     network, faults, *more = restore(found["network"], dict.fromkeys(_OF_A_RUN, Nobody()))
     usb, nodes = more if found.get("kind") == "served" else (None, {})
-    made = Standing(
-        scenario=found["scenario"],
-        model=found["model"],
-        network=network,
-        faults=faults,
-        entries=found.get("entries", 0),
-        usb=usb,
-        nodes=nodes,
-    )
-    _silence(made)
-    return made
-
-
-def _silence(made: Standing) -> None:
-    network = made.network
     network.wire._taps[:] = [tap for tap in network.wire._taps if tap is not nothing]
     network.plant.record(None)
     network.hid.to_host = None
@@ -81,8 +64,9 @@ def _silence(made: Standing) -> None:
         uart.sink = uart.line = None
     for port in network.debug.values():
         port.sink = None
-    for node in made.nodes.values():
+    for node in nodes.values():
         node.port.on_receive = node.port.on_error = None
+    return Standing(found["scenario"], found["model"], network, faults, found.get("entries", 0), usb, nodes)
 
 
 _OUTSIDERS = (

@@ -4,28 +4,34 @@ import socket
 from contextlib import AbstractContextManager
 
 from bus.can import Frame
-from bus.can.candump import line, parsed
+from bus.can.candump import parsed
 from host.logs.files import reason
 from scenarios.doors.clients import address
-from scenarios.doors.control import ControlError
+from scenarios.doors.livenetwork import frame_text
+
+_PATIENCE_S = 5.0
+_ANSWER_S = 60.0  # A snapshot on a busy machine takes its time.
 
 
 class Stepped(AbstractContextManager["Stepped"]):
     """Joins the network served at [HOST:]PORT, once `clients` have (docs/guides/stepped-host.md).
 
-    Time goes on in its calls and stands between them. name: puts its frames in order with those of others.
-    token: for servers of another machine. Raises ControlError for what is refused, OSError.
+    Time goes on in its calls and stands between them. clients: 0: it only talks. name: puts its frames in
+    order with those of others.
+    token: for servers of another machine. Raises ValueError for what is refused, OSError.
     """
 
     def __init__(self, at: str, name: str = "", clients: int = 1, token: str | None = None) -> None:
-        self._socket = socket.create_connection(address(at, "at"))
+        self._socket = socket.create_connection(address(at, "at"), _PATIENCE_S)
+        self._socket.settimeout(None)
         self._stream = self._socket.makefile("rw", encoding="utf-8", newline="\n")
         self.now_ns = 0
         """Simulated time after the last step."""
         if token is not None:
             self.ask(f"token {token}")
-        self.ask(f"join {clients} {name}")
-        self.ask("listen")
+        if clients:
+            self.ask(f"join {clients} {name}")
+            self.ask("listen")
 
     def ask(self, command: str) -> str:
         """A line of the control plane; its answer without `ok`."""
@@ -44,11 +50,11 @@ class Stepped(AbstractContextManager["Stepped"]):
             elif text.startswith("ok"):
                 return heard, text[3:]
             else:
-                raise ControlError(text.removeprefix("error: ") or "the server has gone")
+                raise ValueError(text.removeprefix("error: ") or "the server has gone")
 
     def send(self, identifier: int, data: bytes) -> None:
         """A frame, with the next step."""
-        self.ask("send " + line(0, Frame(identifier, data)).split()[2])
+        self.ask("send " + frame_text(Frame(identifier, data)))
 
     def step(self, span: str) -> list[tuple[int, Frame]]:
         """Let time go on by `5 ms`; every frame of the bus meanwhile, and when it ended, ns."""
@@ -62,32 +68,17 @@ class Stepped(AbstractContextManager["Stepped"]):
         self._socket.close()
 
 
-_PATIENCE_S = 5.0
-_ANSWER_S = 60.0  # A snapshot on a busy machine takes its time.
-
-
 def tell(command: str, at: str, token: str | None = None) -> str:
-    """Send a command to the server `at` [HOST:]PORT; returns its answer, or raises ControlError."""
+    """Send a command to the server `at` [HOST:]PORT; returns its answer, or raises ValueError."""
     host, port = address(at, "--at")
-    lines = ([f"token {token}"] if token else []) + [" ".join(command.split())]
     try:
-        with (
-            socket.create_connection((host, port), _PATIENCE_S) as connection,
-            connection.makefile("rw", encoding="utf-8", newline="\n") as stream,
-        ):
-            connection.settimeout(None if command.startswith(("step", "join")) else _ANSWER_S)
-            answer = ""
-            for line in lines:
-                stream.write(line + "\n")
-                stream.flush()
-                answer = stream.readline().rstrip("\n")
-                if not answer.startswith("ok"):
-                    break
+        with Stepped(at, clients=0, token=token or None) as plane:
+            plane._socket.settimeout(None if command.startswith(("step", "join")) else _ANSWER_S)
+            return plane.ask(" ".join(command.split())).strip()
     except ConnectionRefusedError:
-        what = f"nobody listens; start schmidt serve --control {port} first"
-        raise ControlError(f"{host}:{port}: {what}") from None
+        why = f"nobody listens; start schmidt serve --control {port} first"
     except (OSError, UnicodeError) as error:
-        raise ControlError(f"{host}:{port}: no answer: {reason(error)}") from None
-    if not answer.startswith("ok"):
-        raise ControlError(f"{host}:{port}: {answer.removeprefix('error: ') or 'no answer'}")
-    return answer.removeprefix("ok").strip()
+        why = f"no answer: {reason(error)}"
+    except ValueError as error:
+        why = str(error)
+    raise ValueError(f"{host}:{port}: {why}")

@@ -15,11 +15,10 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 
 from bus.can import Frame
-from bus.can.candump import line, parsed
-from bus.can.frame import check
+from bus.can.candump import line
 from host.client import TICK_NS
 from scenarios.doors.clients import LIMIT, Client
-from scenarios.doors.livenetwork import LiveNetwork
+from scenarios.doors.livenetwork import LiveNetwork, frame_of
 from scenarios.language.units import parse
 
 _LOOK_S = 0.05  # Wall time after which a signal is noticed while time stands.
@@ -77,11 +76,7 @@ class Steps:
                     self._tapped = True
                 return "ok"
             case ["send", text]:
-                found = parsed(f"(0.000000) can0 {text}")
-                if found is None:
-                    raise ValueError("send ID#DATA, such as 011#1105")
-                check(found[1])
-                self._member(client).sent.append(found[1])
+                self._member(client).sent.append(frame_of(text))
                 return "ok"
             case ["step", *span] if span:
                 self._member(client).goal_ns = self._served.now_ns + _span_ns(" ".join(span))

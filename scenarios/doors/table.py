@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
-from scenarios.doors.options import DoorOptions, OptionError
+from scenarios.doors.options import DoorOptions
 from scenarios.native.modules import PACKAGE
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ def _serial(asked: Asked, live: LiveNetwork) -> Any:
     kinds = {"pty": "scenarios.doors.serial_pty.PtyDoor", "tcp": "scenarios.doors.serial_tcp.TcpDoor"}
     kind, _, rest = asked.spec.partition(":")
     if kind not in kinds or not rest:
-        raise OptionError(f'--serial "{asked.spec}": expected pty:DIR or tcp:[HOST:]PORT')
+        raise ValueError(f'--serial "{asked.spec}": expected pty:DIR or tcp:[HOST:]PORT')
     return _class(kinds[kind])(rest, live)
 
 
@@ -70,7 +70,7 @@ def _hid(asked: Asked, live: LiveNetwork) -> Any:
         return _class("scenarios.doors.hid_uhid.UhidDoor")(live)
     kind, _, path = asked.spec.partition(":")
     if kind != "unix" or not path:
-        raise OptionError(f'--hid "{asked.spec}": expected uhid or unix:PATH')
+        raise ValueError(f'--hid "{asked.spec}": expected uhid or unix:PATH')
     return _class("scenarios.doors.hid_unix.UnixDoor")(path, live)
 
 

@@ -13,10 +13,6 @@ _ANSWER_S = 0.02
 _HEARD_S = 0.2  # The EnDat board has to be heard before the motors may be switched on.
 
 
-class BenchError(ValueError):
-    """A command that the axis board did not carry out."""
-
-
 class AxisBench:
     """Time goes on in `wait` and `command` only. start_steps: where the axis stands, absolute encoder."""
 
@@ -36,14 +32,14 @@ class AxisBench:
         self.network.run_until(self._now_ns)
 
     def command(self, opcode: Opcode, *arguments: int) -> None:
-        """Send a command and wait for its answer; raises BenchError when it is not "ok"."""
+        """Send a command and wait for its answer; raises ValueError when it is not "ok"."""
         self._results.clear()
         self._port.send(Frame(COMMAND_BASE + AXIS, pack_command(AXIS, opcode, *arguments)), self._now_ns)
         self.wait(_ANSWER_S)
         result = self._results.get(opcode)
         if result != 0:
             told = f"not answered within {_ANSWER_S * 1e3:g} ms" if result is None else f"refused: {result}"
-            raise BenchError(f"axis board: {opcode.name} {arguments} was {told}")
+            raise ValueError(f"axis board: {opcode.name} {arguments} was {told}")
 
     def _hear(self, _t_ns: int, frame: Frame) -> None:
         reply = unpack_reply(frame.data)

@@ -17,7 +17,6 @@ from plant.parts import PlantModel
 from plant.rows import KINDS
 from plant.wind import share, torque, wind
 from plant.world import AXES
-from scenarios.lab.networks import NetworkError
 
 if TYPE_CHECKING:
     from scenarios.lab.network import Network
@@ -35,12 +34,12 @@ def in_the_wind(model: PlantModel) -> PlantModel:
 
 
 class Blowing:
-    """from_rad: azimuth the wind comes from. Raises NetworkError when there is no station on the mast."""
+    """from_rad: azimuth the wind comes from. Raises ValueError when there is no station on the mast."""
 
     def __init__(self, network: "Network", from_rad: float) -> None:
         mast = network.boards.get(MAST)
         if not isinstance(mast, DeclaredBoard):
-            raise NetworkError(f"network: wind_from: there is no board {MAST} to say how much it blows")
+            raise ValueError(f"network: wind_from: there is no board {MAST} to say how much it blows")
         self._wind: Callable[[int], float] = mast.pins["wind"]
         self.dome: DomePort | None = network.dome
         self._from_rad = from_rad

@@ -14,6 +14,7 @@ from boards.core import PeriodicBoard
 from bus.can import Frame
 from bus.protocol import MEASUREMENT_BASE, AxisMode, unpack_motion
 from plant.gears import RATIO
+from scenarios.lab.layers import Evidence, Staged
 from scenarios.lab.network import Network
 
 NONE, SWITCHES, WATCHDOG = "none", "switches", "watchdog"
@@ -26,6 +27,16 @@ _SOONEST_NS: Final = 5_000_000
 """Between two looks at a switch: at 3 deg/s (paper) the axis goes on by 0.015 deg."""
 _OPEN_NS: Final = 50_000_000  # Between two looks at an open chain: five MOTION frames of each axis.
 _STRONGEST: Final = 1.5  # Most that the fault `weak_supply` makes of the supply.
+
+
+class _Unsupplied(Staged):
+    """Motors without supply, whatever their switches do."""
+
+    last = True
+
+    def duties(self, _wanted: tuple[float, float]) -> tuple[float, float]:
+        """None."""
+        return 0.0, 0.0
 
 
 class Chain:
@@ -49,6 +60,7 @@ class Chain:
         self._standing: tuple[str, ...] = ()
         self._motion = {name: MEASUREMENT_BASE + boards[name].device_type for name in map(board_of, ends)}
         self._off: set[str] = set()
+        self._cut: list[_Unsupplied] = []
         self.open = False
         self.told: Callable[[int, str], None] | None = None
         network.queue.at(network.queue.now_ns, self._look)
@@ -114,15 +126,15 @@ class Chain:
             self._network.queue.at(t_ns + DROP_NS, self._drop)
 
     def _drop(self, t_ns: int) -> None:
-        for axis in self._ends:
-            self._network.stages.supply(axis, False, t_ns)
+        self._cut = [_Unsupplied(self._network, axis, Evidence(""), t_ns) for axis in self._ends]
 
     def _close(self, t_ns: int) -> None:
         self.open = False
         self._network.wire.untap(self._heard)
         self._network.queue.take_out([self._drop].__contains__)
-        for axis in self._ends:
-            self._network.stages.supply(axis, True, t_ns)
+        for each in self._cut:
+            each.clear(t_ns)
+        self._cut = []
         self._tell(t_ns, "closes: both axes are OFF")
 
     def _heard(self, _t_ns: int, frame: Frame, sender: str) -> None:

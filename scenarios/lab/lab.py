@@ -33,10 +33,6 @@ _ANSWER_NS, _PIECE_NS = 100_000_000, 1_000_000
 """A reply takes a few milliseconds (docs/reference/protocol.md)."""
 
 
-class LabError(ValueError):
-    """Something that is not in this lab; one line."""
-
-
 class Lab(AbstractContextManager["Lab"]):
     """Boards, bus and plant, parked and powered; simulated time goes on in `run` and `ask` only.
 
@@ -80,12 +76,12 @@ class Lab(AbstractContextManager["Lab"]):
         return SchmidtBus(self.network.wire)
 
     def ask(self, board: str, command: str, *arguments: int) -> Reply:
-        """Send a command, such as `POWER`, 1, and let time go on until the reply; raises LabError without."""
+        """Send a command, such as `POWER`, 1, and let time go on to the reply; raises ValueError without."""
         try:
             device, opcode = Device[self.network.board(board).name], Opcode[command]
         except KeyError as error:
             known = ", ".join(Opcode.__members__)
-            raise LabError(f"{board}: no command {error}; use one of {known}") from None
+            raise ValueError(f"{board}: no command {error}; use one of {known}") from None
         heard, queue = len(self._frames), self.network.queue
         self._node.arrive(Frame(COMMAND_BASE + device, pack_command(device, opcode, *arguments)))
         end_ns = queue.now_ns + _ANSWER_NS
@@ -95,12 +91,12 @@ class Lab(AbstractContextManager["Lab"]):
                 if frame.identifier == REPLY_BASE + device:
                     return unpack_reply(frame.data)
             heard = len(self._frames)
-        raise LabError(f"{board} does not answer {command}")
+        raise ValueError(f"{board} does not answer {command}")
 
     def pin(self, sensor: str) -> Any:
         """What a board reads of `ra.absolute` now: counts, A or V (docs/reference/faults.md lists them)."""
         if sensor not in SENSORS:
-            raise LabError(f"no sensor {sensor!r}; use one of {', '.join(SENSORS)}")
+            raise ValueError(f"no sensor {sensor!r}; use one of {', '.join(SENSORS)}")
         owner, name, motor = self.faults.place.pin(sensor)
         read = owner[name] if isinstance(owner, dict) else getattr(owner, name)
         return read(self.network.queue.now_ns, *(() if motor is None else (motor,)))
@@ -120,7 +116,7 @@ class Lab(AbstractContextManager["Lab"]):
             found = self._database.get_message_by_name(message)
         except KeyError:
             known = ", ".join(each.name for each in self._database.messages)
-            raise LabError(f"no message {message!r}; use one of {known}") from None
+            raise ValueError(f"no message {message!r}; use one of {known}") from None
         names = [signal.name for signal in found.signals]
         rows = []
         for t_ns, frame, _ in self._frames:

@@ -21,10 +21,6 @@ _LONGEST = 200
 _ERROR = 0x2000_0000  # CAN_ERR_FLAG (linux/can.h).
 
 
-class FeedError(ValueError):
-    """A log or a board that cannot be used; one line."""
-
-
 class Logged(NamedTuple):
     """A frame and when it ended, ns."""
 
@@ -33,20 +29,20 @@ class Logged(NamedTuple):
 
 
 def read(file: Path) -> Iterator[Logged]:
-    """Frames of a `candump -L` log, its error frames left out; raises FeedError."""
+    """Frames of a `candump -L` log, its error frames left out; raises ValueError."""
     try:
         check_regular(file)
         with file.open(encoding="ascii", errors="replace") as lines:
             for number, line in enumerate(iter(partial(lines.readline, _LONGEST), ""), 1):
                 found = parsed(line.rstrip("\n"))
                 if found is None:
-                    raise FeedError(f"{file}:{number}: not a line of candump -L: {line[:60]!r}")
+                    raise ValueError(f"{file}:{number}: not a line of candump -L: {line[:60]!r}")
                 if not found[1].identifier & _ERROR:
                     yield Logged(*found)
     except TextError as error:
-        raise FeedError(f"{file}: {error.what}") from None
+        raise ValueError(f"{file}: {error.what}") from None
     except OSError as error:
-        raise FeedError(f"{file}: {error.strerror}") from None
+        raise ValueError(f"{file}: {error.strerror}") from None
 
 
 def says(device: int, frame: Frame) -> bool:
@@ -60,9 +56,11 @@ class Feed:
 
     def __init__(self, network: Network, board: str, file: Path) -> None:
         if board not in network.boards:
-            raise FeedError(f"--mute {board}: there is no such board; use one of {', '.join(network.boards)}")
+            raise ValueError(
+                f"--mute {board}: there is no such board; use one of {', '.join(network.boards)}"
+            )
         muted = network.boards[board]
-        muted.send = _drop
+        muted.send = lambda _frame, _ready_ns: True  # in the place of its transmit buffers
         self._queue, bit_ns = network.queue, network.wire.bit_ns
         self._node = OutsideNode(self._queue, network.wire, f"{board} from the log")
         self._coming = deque(
@@ -71,18 +69,13 @@ class Feed:
             if says(muted.device_type, logged.frame)
         )
         if not self._coming:
-            raise FeedError(f"{file}: no frame of {board} is in it")
+            raise ValueError(f"{file}: no frame of {board} is in it")
         self._queue.at(max(0, self._coming[0][0]), self._next)
 
     def _next(self, t_ns: int) -> None:
         self._node.arrive(self._coming.popleft()[1])
         if self._coming:
             self._queue.at(max(t_ns, self._coming[0][0]), self._next)
-
-
-def _drop(_frame: Frame, _ready_ns: int) -> bool:
-    """In the place of a muted board's transmit buffers."""
-    return True
 
 
 @dataclass

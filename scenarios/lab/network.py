@@ -34,9 +34,9 @@ from plant.axis import AxisPort
 from plant.dome import DomePort
 from plant.plant import Plant
 from scenarios.lab.drive import axis_config
-from scenarios.lab.networks import FINAL, NetworkConfig, NetworkError, NodeConfig, devices_of
+from scenarios.lab.layers import Stacks, chained
+from scenarios.lab.networks import FINAL, NetworkConfig, NodeConfig, devices_of
 from scenarios.lab.nodes import BOARDS, Site, pins_of
-from scenarios.lab.powerstages import PowerStages
 
 if TYPE_CHECKING:
     from boards.canopen import Voice
@@ -68,26 +68,23 @@ class Network:
     uarts: dict[str, Uart]
     debug: dict[str, DebugPort] = field(default_factory=dict)
     voices: dict[str, "Voice"] = field(default_factory=dict)
-    stages: PowerStages = field(init=False)
+    layers: Stacks = field(default_factory=lambda: Stacks(chained))
     chain: "Chain | None" = None
     dome: DomePort | None = None
     """None: no dome board, the telescope stands in the open."""
     blowing: "Blowing | None" = None
-
-    def __post_init__(self) -> None:
-        self.stages = PowerStages(self)
 
     def run_until(self, t_ns: int) -> None:
         """Let simulated time go on to `t_ns`."""
         self.queue.run_until(t_ns)
 
     def board(self, name: str) -> Board:
-        """Return a board by name; raises NetworkError naming the ones there are."""
+        """Return a board by name; raises ValueError naming the ones there are."""
         try:
             return self.boards[name]
         except KeyError:
             known = ", ".join(self.boards)
-            raise NetworkError(f"network: there is no board '{name}'; expected one of {known}") from None
+            raise ValueError(f"network: there is no board '{name}'; expected one of {known}") from None
 
     @property
     def overruns(self) -> dict[str, int]:
@@ -181,7 +178,7 @@ class _Wiring:
         try:
             return load()
         except FirmwareError as error:
-            raise NetworkError(f"network: nodes.{device.name}.firmware: {error}") from None
+            raise ValueError(f"network: nodes.{device.name}.firmware: {error}") from None
 
     def position(self, device: Device) -> Board:
         axis, port = self.port(device)
@@ -222,7 +219,7 @@ class _Wiring:
             pins = pins_of(board, device.name, self.site, given)
             return board(self.of(device), pins)
         except KindError as error:
-            raise NetworkError(str(error)) from None
+            raise ValueError(str(error)) from None
         except (Exception, SystemExit) as error:
             raise board_error(board, device.name, 0, error) from None
 
@@ -246,7 +243,7 @@ _IN_AVR = ("MOTOR_", "DISPLAY")
 
 
 def build(config: NetworkConfig | None, plant: Plant, seed: int, humidity: float = 0.5) -> Network:
-    """The network, every board running from time 0 on; raises NetworkError for settings that cannot be.
+    """The network, every board running from time 0 on; raises ValueError for settings that cannot be.
 
     humidity: relative, of the air, 0 to 1.
     """
@@ -254,13 +251,13 @@ def build(config: NetworkConfig | None, plant: Plant, seed: int, humidity: float
     devices = devices_of(config)
     size = len(devices) if config.size is None else config.size
     if not 1 <= size <= _MAXIMUM_NODES:
-        raise NetworkError(f"network: size {size} is not within 1..{_MAXIMUM_NODES}")
+        raise ValueError(f"network: size {size} is not within 1..{_MAXIMUM_NODES}")
     wiring = _Wiring(config, plant, seed, devices[:size], humidity)
     boards = wiring.boards
     _check_firmware(config)
     for device in wiring.devices:
         if kind_of(device) is None and config.node(device.name).inputs:
-            raise NetworkError(f"network: nodes.{device.name}.inputs: this board has no inputs")
+            raise ValueError(f"network: nodes.{device.name}.inputs: this board has no inputs")
         if kind_of(device) is not None:
             boards[device.name] = wiring.declared(device)
             continue
@@ -271,7 +268,7 @@ def build(config: NetworkConfig | None, plant: Plant, seed: int, humidity: float
         encoder = plant.ra.tachometer_b if device_type & 1 else plant.ra.tachometer_a
         boards[name] = wiring.velocity(name, device_type, encoder)
     if other := set(config.nodes) - set(boards):
-        raise NetworkError(f"network: there is no board '{min(other)}'; expected one of {', '.join(boards)}")
+        raise ValueError(f"network: there is no board '{min(other)}'; expected one of {', '.join(boards)}")
     gateway = boards.get(Device.GATEWAY.name)
     hid = gateway.hid if isinstance(gateway, GatewayBoard) else HidEndpoint()
     uarts = {name: uart for name, board in boards.items() if (uart := uart_of(board)) is not None}
@@ -295,9 +292,9 @@ def _check_firmware(config: NetworkConfig) -> None:
         where = f"network: nodes.{name}.firmware"
         what, boards = ("a program for an AVR", _IN_AVR) if file.suffix == _AVR else ("C", _IN_C)
         if not name.startswith(boards):
-            raise NetworkError(f"{where}: {what} runs on boards {', '.join(boards)} only")
+            raise ValueError(f"{where}: {what} runs on boards {', '.join(boards)} only")
         if config.canopen:
-            raise NetworkError(f"{where}: a board with firmware of its own has no CANopen voice")
+            raise ValueError(f"{where}: a board with firmware of its own has no CANopen voice")
 
 
 def _set_parameters(board: Board, settings: NodeConfig) -> None:
@@ -305,4 +302,4 @@ def _set_parameters(board: Board, settings: NodeConfig) -> None:
         if board.parameters.set(number, value).result:
             reply = board.parameters.get(number)
             reason = "does not exist" if reply.result else f"does not take {value}"
-            raise NetworkError(f"network: nodes.{board.name}.parameters: parameter {number} {reason}")
+            raise ValueError(f"network: nodes.{board.name}.parameters: parameter {number} {reason}")

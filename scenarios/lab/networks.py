@@ -25,10 +25,6 @@ NETWORKS: dict[str, tuple[Device, ...]] = {"lab": LAB, "serial": SERIAL, "final"
 """By the name a scenario and the command line give them."""
 
 
-class NetworkError(ValueError):
-    """A network that cannot be built."""
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NodeConfig:
     """What may be set per board.
@@ -71,10 +67,10 @@ class NetworkConfig:
 
 
 def devices_of(config: NetworkConfig) -> tuple[Device, ...]:
-    """The devices a configuration asks for; raises NetworkError for a network nobody knows."""
+    """The devices a configuration asks for; raises ValueError for a network nobody knows."""
     if config.name not in NETWORKS:
         known = ", ".join(NETWORKS)
-        raise NetworkError(f"network: there is no network '{config.name}'; expected one of {known}")
+        raise ValueError(f"network: there is no network '{config.name}'; expected one of {known}")
     own = dict.fromkeys(device for board in config.extra for device in board.KIND.devices())
     return NETWORKS[config.name] + tuple(device for device in own if device not in NETWORKS[config.name])
 

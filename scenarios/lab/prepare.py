@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from host.sky.observed import Clock
 from plant.yamltext import nearest
-from scenarios.language.configure import read_tables, with_firmware, with_parameters
+from scenarios.language.configure import completed, with_firmware
 from scenarios.language.document import Document, ScenarioError, read
 from scenarios.language.load import DEFAULT_PLANT, convert
 from scenarios.language.model import Scenario, check_targets
@@ -119,11 +119,10 @@ def prepare(source: Path | Document, changes: Changes | None = None) -> tuple[Sc
     scenario = changes.to(load(source))
     check_targets(scenario)
     check_boards(scenario)
-    scenario = read_tables(scenario)
     if changes.firmware is not None:
         scenario = with_firmware(scenario, changes.firmware)
     model = plant_model(scenario.plant, scenario.file.parent)
-    return with_parameters(scenario, model), model
+    return completed(scenario, model), model
 
 
 def check_boards(scenario: Scenario) -> None:
@@ -151,15 +150,12 @@ def chosen(
     """
     from scenarios.language.plants import plant_model
 
+    changes = Changes(seed=seed, plant=plant, network=network_name)
     if scenario_file is not None:
-        return prepare(scenario_file, Changes(seed=seed, plant=plant, network=network_name))
+        return prepare(scenario_file, changes)
     name = network_name or "lab"
-    scenario = Scenario(
-        file=Path(name),
-        name=name,
-        clock=UNDATED,
-        network={"name": name},
-        plant={"file": plant or DEFAULT_PLANT},
-        seed=1 if seed is None else seed,
+    bare = Scenario(
+        file=Path(name), name=name, clock=UNDATED, network={"name": name}, plant={"file": DEFAULT_PLANT}
     )
+    scenario = changes.to(bare)
     return scenario, plant_model(scenario.plant, Path())

@@ -12,9 +12,9 @@ from bus.can.candump import CandumpWriter
 from bus.protocol import Device
 from bus.time import generator
 from host.logs import distort
-from host.logs.ascii import AsciiLogs
 from host.logs.axis import AxisLog, Distortion
 from host.logs.files import BlockFile, LogError, ZstdFile, check_space
+from host.logs.journal import AsciiLogs
 from host.logs.traces import Trace
 from host.procedures.manual import AXES
 from host.serial_link import SerialLink

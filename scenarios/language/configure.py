@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -23,46 +23,11 @@ from plant.observer import sections
 from plant.parts import AxisModel, PlantModel
 from scenarios.language.document import ScenarioError, read
 from scenarios.language.model import Scenario, Step
-from scenarios.language.validate import check
+from scenarios.language.validate import check, schema
 
 _Q8, _Q16 = 256, 65536
-_MOST_STEPS = 3000
-
-
-def _block(beside: dict[str, Any], **fields: dict[str, Any]) -> dict[str, Any]:
-    """beside: fields that may be missing."""
-    found = {"type": "object", "required": list(fields), "properties": fields | beside}
-    return found | {"additionalProperties": False}
-
-
-def _number(low: float, **high: float) -> dict[str, Any]:
-    return {"type": "number", "minimum": low, **high}
-
-
-_WAVE = _number(-_MOST_STEPS, maximum=_MOST_STEPS)
-_TEXT = {"type": "string"}
-_SOURCE = {"source": _TEXT}
-_ROW = _block(
-    {"torque_Nm": {"type": "number"}} | _SOURCE,
-    order=_number(0, exclusiveMaximum=32768),
-    cosine_steps=_WAVE,
-    sine_steps=_WAVE,
-)
-_LANGUAGE = _block(
-    {
-        "plant": _TEXT,
-        "lines": {"type": "array", "maxItems": HARMONICS, "items": _ROW},
-        "left_out": {"type": "array", "items": _TEXT},
-    },
-    format={"enum": [FORMAT]},
-    axis={"enum": ["ra", "dec"]},
-    friction=_block(
-        _SOURCE,
-        steps=_number(0, maximum=_MOST_STEPS),
-        travel_arcsec={"type": "number", "exclusiveMinimum": 0, "maximum": ARCSEC_PER_TURN},
-    ),
-)
-"""What a file may say; orders are cycles per turn, with 16 bits before the point."""
+SCHEMA_FILE = Path(__file__).with_name("compensation.schema.json")
+"""What a file may say."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -115,7 +80,7 @@ def load_compensation(file: Path) -> Compensation:
     data = document.data
     if not isinstance(data, dict) or data.get("format") != FORMAT:
         raise ScenarioError(f"{file}: is not a compensation file, 'format: {FORMAT}' is missing")
-    check(document, _LANGUAGE)
+    check(document, schema(SCHEMA_FILE))
     lines = [
         Line(*(float(row[name]) for name in ("order", "cosine_steps", "sine_steps")))
         for row in data.get("lines", [])
@@ -190,37 +155,24 @@ def _with_step(scenario: Scenario, place: int, action: str, name: str, **argumen
     return dataclasses.replace(scenario, steps=tuple(steps))
 
 
-def _with_argument(scenario: Scenario, action: str, name: str, found: Callable[[Step], object]) -> Scenario:
-    """Every step of an action with one argument more."""
-    steps = (
-        dataclasses.replace(step, arguments={**step.arguments, name: found(step)})
-        if step.action == action
-        else step
-        for step in scenario.steps
+def completed(scenario: Scenario, model: PlantModel) -> Scenario:
+    """Firmware steps that know what their firmware is on the drives of a plant, compensation steps with their
+    tables; raises `ScenarioError`."""
+    return dataclasses.replace(
+        scenario, steps=tuple(_completed(scenario, model, each) for each in scenario.steps)
     )
-    return dataclasses.replace(scenario, steps=tuple(steps))
 
 
-def with_parameters(scenario: Scenario, model: PlantModel) -> Scenario:
-    """The scenario whose firmware steps know what their firmware is on the drives of a plant."""
-
-    def of_axes(step: Step) -> object:
-        return {axis: parameters_of(step.arguments["use"], model, axis) for axis in AXES}
-
-    return _with_argument(scenario, "firmware", "of_axes", of_axes)
-
-
-def read_tables(scenario: Scenario) -> Scenario:
-    """Read the files of the scenario's `compensation` steps: from here, then beside the scenario."""
-
-    def table(step: Step) -> object:
-        if "table" in step.arguments:
-            return step.arguments["table"]
+def _completed(scenario: Scenario, model: PlantModel, step: Step) -> Step:
+    found: dict[str, Any] = {}
+    if step.action == "firmware":
+        found["of_axes"] = {axis: parameters_of(step.arguments["use"], model, axis) for axis in AXES}
+    elif step.action == "compensation" and "table" not in step.arguments:
         name = step.arguments["file"]
-        places = Path(name), scenario.file.parent / name
+        places = Path(name), scenario.file.parent / name  # from here, then beside the scenario
         try:
-            return load_compensation(next((path for path in places if path.is_file()), Path(name)))
+            file = next((path for path in places if path.is_file()), Path(name))
+            found["table"] = load_compensation(file)
         except ScenarioError as error:
             raise ScenarioError(f"{step.where}: compensation: {error}") from None
-
-    return _with_argument(scenario, "compensation", "table", table)
+    return dataclasses.replace(step, arguments={**step.arguments, **found})

@@ -7,7 +7,7 @@ from typing import Any
 
 from bus.protocol import Device, Opcode
 from host.client import Client, ClientError, Procedure
-from host.logs.ascii import AsciiLogs
+from host.logs.journal import AsciiLogs
 from host.procedures import dome, focus, manual, power
 from host.procedures.autoguide import Guided, Guiding, autoguide
 from host.procedures.pointing import CLASSES, Pointing
@@ -15,7 +15,7 @@ from host.procedures.pointing_run import Eye, Visit, directions, visit
 from host.sky.catalogue import Star
 from host.sky.pointfit import TooFewStars, fit
 from host.sky.pointmodel import PointingModel
-from host.sky.track import StarTrack
+from host.sky.tracks import StarTrack
 from host.sky.visibility import Unreachable, check_reachable
 from scenarios.language import configure
 from scenarios.language.model import STARS, Scenario, Step, target_of

@@ -1,12 +1,10 @@
 """A scenario with a compensation, beside the same without it and with one that is wrong: what does it buy?"""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,10 +15,7 @@ from scenarios.run import run as runner
 from scenarios.run.errors import NoData, rate_errors
 from scenarios.run.outcome import Array, Outcome
 from scenarios.run.report import html
-from scenarios.run.report.style import COLOURS, axes, new_figure, thin, title
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from scenarios.run.report.style import COLOURS, Figure, axes, new_figure, thin, title
 
 WRONG_SCALE, WRONG_TURN = 0.8, 0.2
 """The table beside it: 20 % too small and turned by 0.2 rad, as the issue asks."""

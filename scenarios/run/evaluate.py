@@ -10,7 +10,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from host.logs import traces
-from scenarios.lab.faults.layers import Evidence
 from scenarios.language.model import Expectation
 from scenarios.language.programme import Record
 from scenarios.language.units import BASE
@@ -54,14 +53,15 @@ def judge(outcome: Outcome) -> list[Verdict]:
         reason = cut_off or f"still going at the time limit of {outcome.scenario.time_limit_s:g} s"
     programme = Verdict("programme completed", done, total, "steps", reason=reason)
     whole = [Verdict("run to its end", 0, 1, "times", reason=cut_off)] if cut_off else []
-    silent = [_silent(each) for each in outcome.faults if each.missing]
+    silent = [
+        Verdict(
+            f"fault {each.name} from {each.at_ns * 1e-9:g} s on acted", 0, 1, "times",
+            reason=f"{each.where}: it met nothing; may_not_act: true beside it allows that",
+        )
+        for each in outcome.faults if each.missing
+    ]  # fmt: skip
     judged = [_judge_one(outcome, each) for each in outcome.scenario.expectations]
     return [programme, *whole, *silent, *judged]
-
-
-def _silent(fault: Evidence) -> Verdict:
-    reason = f"{fault.where}: it met nothing; may_not_act: true beside it allows that"
-    return Verdict(f"fault {fault.name} from {fault.at_ns * 1e-9:g} s on acted", 0, 1, "times", reason=reason)
 
 
 def _judge_one(outcome: Outcome, expectation: Expectation) -> Verdict:

@@ -14,11 +14,10 @@ from pathlib import Path
 from typing import Any, NamedTuple, TextIO
 
 from bus.protocol.page import DBC_PATH
+from host.logs.traces import batches
 from plant.yamltext import read_text
 
 SUMMARY = "summary.json"
-_BATCH = 4096
-"""Rows of a Parquet file at a time."""
 _LINE_LOGS = {
     "commands": ("utc", "t_s", "node", "command", "result"),
     "errors": ("utc", "t_s", "where", "what"),
@@ -61,8 +60,7 @@ def sources(folder: Path, summary: dict[str, Any], files: ExitStack) -> list[Ite
     """All that is there; each one sorted by time. What is open of them is closed with `files`. Raises
     ValueError, here or on the way, with the file that is broken."""
     logs = [(_frames, path) for path in (folder / "can.log", folder / "can.log.zst") if path.exists()][:1]
-    logs += [(_axis_log, path) for path in sorted(folder.glob("axis-*.csv"))]
-    logs += [(_parquet, path) for path in sorted(folder.glob("*.parquet"))]
+    logs += [(_rows, path) for form in ("axis-*.csv", "*.parquet") for path in sorted(folder.glob(form))]
     logs += [(_lines, path) for name in _LINE_LOGS if (path := folder / f"{name}.log").exists()]
     with _named(folder / SUMMARY):
         rows = [files.enter_context(closing(_told(read, path))) for read, path in logs]
@@ -117,24 +115,13 @@ def _text(path: Path) -> TextIO:
     return io.TextIOWrapper(pyarrow.input_stream(str(path), compression="zstd"), encoding="ascii")
 
 
-def _axis_log(path: Path) -> Iterator[Entry]:
-    with path.open(encoding="utf-8", newline="") as file:
-        rows = csv.DictReader(line for line in file if not line.startswith("#"))
-        source = Source(f"/{path.stem.replace('-', '/')}", dict.fromkeys(rows.fieldnames or (), NUMBER))
-        for row in rows:
-            values = {name: float(text) if text else None for name, text in row.items()}
-            yield Entry(round((values["t"] or 0.0) * 1e9), source, values)
-
-
-def _parquet(path: Path) -> Iterator[Entry]:
-    """Traces of the plant (truth) and of the host."""
-    from pyarrow import parquet
-
-    file = parquet.ParquetFile(path)
-    source = Source(f"/{path.stem.replace('-', '/')}", dict.fromkeys(file.schema_arrow.names, NUMBER))
-    for batch in file.iter_batches(_BATCH):
+def _rows(path: Path) -> Iterator[Entry]:
+    """Axis logs, and traces of the plant (truth) and of the host."""
+    for batch in batches(path):
+        source = Source(f"/{path.stem.replace('-', '/')}", dict.fromkeys(batch.schema.names, NUMBER))
+        time = "t_s" if path.suffix == ".parquet" else "t"
         for row in batch.to_pylist():
-            yield Entry(round(row["t_s"] * 1e9), source, row)
+            yield Entry(round((row[time] or 0.0) * 1e9), source, row)
 
 
 def _lines(path: Path) -> Iterator[Entry]:

@@ -20,7 +20,7 @@ from host.sky.observed import observe_many
 from host.sky.pointread import AXES, DECLINATION, HOUR_ANGLE
 from plant.mount import sky
 from plant.parts import MountErrors
-from scenarios.lab.faults.layers import Evidence
+from scenarios.lab.layers import Evidence
 from scenarios.language.model import Scenario
 from scenarios.language.programme import Record, guiding_of
 
@@ -102,22 +102,10 @@ class Outcome:
 
     def axis_log(self, axis: str, low_s: float, high_s: float) -> dict[str, Array]:
         """Columns t and velocity of the axis log, rows of the window."""
-        from pyarrow import csv
-
-        path = self.folder / f"axis-{axis}.csv"
-        with path.open() as file:
-            header = sum(1 for _ in iter(lambda: file.readline().startswith("#"), False))
         parts: list[Array] = [np.empty((2, 0))]
-        with csv.open_csv(
-            path,
-            read_options=csv.ReadOptions(skip_rows=header),
-            convert_options=csv.ConvertOptions(
-                include_columns=["t", "velocity"], column_types={"t": "float64", "velocity": "float64"}
-            ),
-        ) as batches:
-            for batch in batches:
-                rows = np.stack([np.from_dlpack(batch.column(name)) for name in ("t", "velocity")])
-                parts.append(rows[:, (rows[0] >= low_s) & (rows[0] <= high_s)])
+        for batch in traces.batches(self.folder / f"axis-{axis}.csv", ("t", "velocity")):
+            rows = np.stack([np.from_dlpack(batch.column(name)) for name in ("t", "velocity")])
+            parts.append(rows[:, (rows[0] >= low_s) & (rows[0] <= high_s)])
         t, velocity = np.concatenate(parts, axis=1)
         return {"t": t, "velocity": velocity}
 

@@ -40,10 +40,6 @@ _START_S = 300.0
 """Until it answers: the first start compiles."""
 
 
-class BenchError(RuntimeError):
-    """The served network did not come up, or ended early."""
-
-
 def punctuality(seconds: int, native: bool) -> dict[str, dict[str, float]]:
     """By way: shares and times of ticks over `seconds` of wall time at speed 1, and the system's load while
     that went on.
@@ -187,7 +183,7 @@ def _served(pure: bool, folder: Path, *doors: str) -> Iterator[tuple[int, subpro
             end = time.monotonic() + _START_S
             while not _answers(port):
                 if process.poll() is not None or time.monotonic() > end:
-                    raise BenchError(" ".join((folder / "said").read_text().split())[-300:])
+                    raise ValueError(" ".join((folder / "said").read_text().split())[-300:])
                 time.sleep(0.1)
             yield port, process
             process.wait(60)

@@ -3,7 +3,6 @@
 import pytest
 
 from scenarios.doors.making import attached, check_ports
-from scenarios.doors.options import OptionError
 
 BOARDS = ("AXIS_RA", "POSITION_RA", "FOCUS")
 
@@ -30,5 +29,5 @@ def test_a_door_says_how_to_attach(name: str, said: str) -> None:
 
 def test_two_doors_do_not_want_one_port() -> None:
     check_ports(["--serial tcp:7000", "--control 7003"], BOARDS)
-    with pytest.raises(OptionError, match="--control 7002: --serial tcp:7000 takes the ports up to 7002"):
+    with pytest.raises(ValueError, match="--control 7002: --serial tcp:7000 takes the ports up to 7002"):
         check_ports(["--serial tcp:7000", "--control 7002"], BOARDS)

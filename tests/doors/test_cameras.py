@@ -14,7 +14,7 @@ from host.camera.models import Window
 from host.camera.stars import from_file
 from host.sky.observed import observe
 from scenarios.doors.making import check
-from scenarios.doors.options import DoorOptions, OptionError
+from scenarios.doors.options import ServeOptions
 from tests.host.inprocess import HostInProcess
 from tests.host.telescope.conftest import Rig
 
@@ -38,7 +38,7 @@ def night(shutter: bool) -> tuple[list[tuple[int, Frame, str]], list[tuple[float
     """Frames on the bus, true angles, and looks of an exposure, of axes that power up and move."""
     rig, frames, truth, looks = Rig(), [], [], 0
     rig.network.wire.tap(lambda *heard: frames.append(heard))
-    rig.host.open_cameras(DoorOptions(asked=ALPACA))
+    rig.host.open_cameras(ServeOptions(asked=ALPACA))
     camera = rig.pc.cameras[1]
     rig.run(lambda t: t.drive.power_on())
     rig.do(lambda t: t.drive.goto(rig.up()))
@@ -67,7 +67,7 @@ def test_an_open_shutter_changes_nothing_on_bus_or_plant() -> None:
 def test_cameras_see_what_another_host_moves(monkeypatch: pytest.MonkeyPatch) -> None:
     """As `schmidt host` beside `schmidt serve`: the telescope is its own, the cameras are here."""
     rig = Rig()
-    rig.host.open_cameras(DoorOptions(asked=ALPACA))
+    rig.host.open_cameras(ServeOptions(asked=ALPACA))
     here, other = rig.host.poll, HostInProcess(rig.served)
     monkeypatch.setattr(rig.host, "poll", lambda now_ns: (here(now_ns), other.poll(now_ns)))
     rig.telescope = other.pc.telescope
@@ -110,20 +110,20 @@ def test_a_catalogue_that_cannot_be_used_says_why(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("option", ["stars", "frames"])
 def test_options_of_cameras_need_their_door(option: str, tmp_path: Path) -> None:
-    with pytest.raises(OptionError, match=f"--{option} needs --alpaca"):
-        check(DoorOptions(asked={"lx200": ("0",)}, **{option: tmp_path}))  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match=f"--{option} needs --alpaca"):
+        check(ServeOptions(asked={"lx200": ("0",)}, **{option: tmp_path}))  # type: ignore[arg-type]
 
 
 def test_logs_of_the_host_need_a_host(tmp_path: Path) -> None:
-    with pytest.raises(OptionError, match=r"--logs is the host's: it needs --lx200, --alpaca or --console"):
-        check(DoorOptions(asked={"control": ("0",)}, logs=tmp_path))
-    check(DoorOptions(asked={"lx200": ("0",)}, logs=tmp_path))
+    with pytest.raises(ValueError, match=r"--logs is the host's: it needs --lx200, --alpaca or --console"):
+        check(ServeOptions(asked={"control": ("0",)}, logs=tmp_path))
+    check(ServeOptions(asked={"lx200": ("0",)}, logs=tmp_path))
 
 
 def test_frames_are_kept_as_files(tmp_path: Path) -> None:
     fits = pytest.importorskip("astropy.io.fits", reason="pip install .[camera]")
     rig = Rig()
-    rig.host.open_cameras(DoorOptions(asked=ALPACA, frames=tmp_path / "frames"))
+    rig.host.open_cameras(ServeOptions(asked=ALPACA, frames=tmp_path / "frames"))
     camera = rig.pc.cameras[0]
     camera.start(order(camera, 0.5))
     rig.advance(1.0)

@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable
 from multiprocessing import Pipe
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -18,7 +19,7 @@ from scenarios.doors.busview import EmulatedBus
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.options import ServeOptions
 from scenarios.doors.pc import dated
-from scenarios.doors.pipe_messages import Settings, Wish
+from scenarios.doors.pipe_messages import Settings
 from scenarios.doors.piped_host import BusMirror, main
 from scenarios.lab.prepare import chosen
 from tests.doors.process import Serving
@@ -35,13 +36,13 @@ class Both:
     def __init__(self, network: str = "lab") -> None:
         self.served = LiveNetwork(*chosen(network_name=network))
         self.bus = EmulatedBus(self.served)
-        self.wishes: list[Wish] = []
+        self.wishes: list[Any] = []
         self.mirror = BusMirror(list(self.served.network.boards), self.bus.fault_kinds(), self.wishes.append)
 
     def carry(self) -> None:
         """A slice: wishes there, answers and a picture back."""
-        for wish in self.wishes:
-            self.mirror.done(self.bus.wish(wish))
+        for _, number, command in self.wishes:
+            self.mirror.done(number, *self.bus.wish(command))
         self.wishes.clear()
         self.served.run_until(self.served.now_ns + 50_000_000)
         self.mirror.state = self.bus.look()

@@ -9,7 +9,6 @@ from typing import NoReturn
 
 import pytest
 
-from scenarios.doors.door import DoorError
 from scenarios.doors.loop import first
 from tests.doors.process import PROGRAM
 from tests.ports import free_ports
@@ -28,7 +27,7 @@ def test_the_ticks_are_first_and_their_children_ordinary_and_afterwards_all_is_a
             assert scheduler() == os.SCHED_RR
             child = subprocess.run([sys.executable, "-c", ASK], capture_output=True, text=True, check=True)
             assert int(child.stdout) == os.SCHED_OTHER
-    except DoorError as error:
+    except OSError as error:
         pytest.skip(str(error))
     assert scheduler() == before
 
@@ -44,7 +43,7 @@ def test_a_doors_thread_is_lifted_too_and_let_down_again() -> None:
         with first():
             assert os.sched_getscheduler(thread.native_id) & ~os.SCHED_RESET_ON_FORK == os.SCHED_RR
         assert os.sched_getscheduler(thread.native_id) == os.SCHED_OTHER
-    except DoorError as error:
+    except OSError as error:
         pytest.skip(str(error))
     finally:
         wait.set()
@@ -56,7 +55,7 @@ def test_what_the_system_does_not_grant_is_one_line(monkeypatch: pytest.MonkeyPa
         raise PermissionError(1, "Operation not permitted")
 
     monkeypatch.setattr(os, "sched_setscheduler", refuse)
-    with pytest.raises(DoorError, match="not granted; run as root"), first():
+    with pytest.raises(OSError, match="not granted; run as root"), first():
         pass
     with first(asked=False) as said:
         assert said.startswith("ticks run among other programs") and "ulimit -r 1" in said
@@ -65,7 +64,7 @@ def test_what_the_system_does_not_grant_is_one_line(monkeypatch: pytest.MonkeyPa
 
 def test_a_system_without_the_class_runs_on(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delattr(os, "sched_setscheduler")
-    with pytest.raises(DoorError, match="has no real-time scheduling"), first():
+    with pytest.raises(OSError, match="has no real-time scheduling"), first():
         pass
     with first(asked=False) as said:
         assert "among other programs" in said

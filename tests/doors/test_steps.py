@@ -11,7 +11,7 @@ import pytest
 from bus.can import Frame
 from scenarios.doors.control import ControlDoor
 from scenarios.doors.making import check
-from scenarios.doors.options import OptionError, ServeOptions
+from scenarios.doors.options import ServeOptions
 from scenarios.doors.stepped import Stepped
 from scenarios.doors.steps import Steps
 from tests.docs.guides import write_files
@@ -160,7 +160,7 @@ def test_who_does_not_serve_steps_says_so(bench: Bench) -> None:
     ask = Caller(bench, door.port)
     assert ask("step 5ms") == "error: step: time is paced here (schmidt serve --clock)"
     ask.socket.close()
-    with pytest.raises(OptionError, match="--clock steps needs --control"):
+    with pytest.raises(ValueError, match="--clock steps needs --control"):
         check(ServeOptions(clock="steps", asked={"serial": ("tcp:1",)}))
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 from host.outside import Outside
 from scenarios.doors.busview import Looks
 from scenarios.doors.livenetwork import LiveNetwork
-from scenarios.doors.options import DoorOptions
+from scenarios.doors.options import ServeOptions
 from scenarios.doors.pc import TelescopePc
 from scenarios.doors.piped_host import cameras
 
@@ -20,7 +20,7 @@ class HostInProcess:
         self.looks = Looks(served)
         self._scenario = served.scenario
 
-    def open_cameras(self, options: DoorOptions) -> None:
+    def open_cameras(self, options: ServeOptions) -> None:
         self.pc.cameras = cameras(self._scenario, options, self.pc.guiding)
 
     def poll(self, now_ns: int) -> None:

@@ -5,7 +5,7 @@ import threading
 from pathlib import Path
 from time import monotonic, sleep
 
-from scenarios.doors.options import DoorOptions
+from scenarios.doors.options import ServeOptions
 from tests.host.telescope.conftest import START, Rig
 
 
@@ -22,7 +22,7 @@ class Live(Rig):
     ) -> None:
         super().__init__(logs, start, network)
         if cameras:
-            self.host.open_cameras(DoorOptions(asked={"alpaca": ("0",)}))
+            self.host.open_cameras(ServeOptions(asked={"alpaca": ("0",)}))
         self.outside = self.host.outside
         self.speed = speed
         self._end = threading.Event()

@@ -21,8 +21,8 @@ from bus.protocol.report import pack_report, slot, unpack_commands
 from bus.protocol.serial import AxisSample, Packet, pack_packet
 from host.client import REPLY_TIMEOUT_NS, TICK_NS, TRIES, Client, ClientError, Procedure
 from host.link import HidLink
-from host.logs.ascii import AsciiLogs
 from host.logs.files import LogError
+from host.logs.journal import AsciiLogs
 from host.procedures.power import health_check
 from host.serial_link import SerialLink
 

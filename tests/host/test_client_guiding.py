@@ -6,7 +6,7 @@ import pytest
 
 from calibration.inputs.guidelog import read_guide_log
 from host.camera.camera import Order
-from scenarios.doors.options import DoorOptions
+from scenarios.doors.options import ServeOptions
 from tests.doors.test_cameras import ALPACA, order, read_out
 from tests.host.telescope.conftest import Rig
 
@@ -23,7 +23,7 @@ def test_a_session_is_a_star_and_what_a_client_sent_meanwhile(tmp_path: Path) ->
     log = tmp_path / "guiding.txt"
     log.write_text("of an earlier evening")
     rig = Rig(tmp_path)
-    rig.host.open_cameras(DoorOptions(asked=ALPACA))
+    rig.host.open_cameras(ServeOptions(asked=ALPACA))
     rig.run(lambda t: t.drive.power_on())
     rig.run(lambda t: t.drive.goto(rig.up(hour_angle_h=-0.5)))
     for _ in range(3):

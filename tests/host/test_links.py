@@ -13,8 +13,7 @@ from rich.console import Console
 from bus.can.frame import Frame
 from bus.protocol import Device, Opcode, pack_command
 from bus.protocol.report import pack_report, unpack_report
-from host.links.ports import CanPort
-from host.links.task import LinkTask, Port
+from host.links.ports import CanPort, LinkTask, Port
 from scenarios.doors.cabled_host import CabledHost
 from scenarios.doors.hid_unix import UnixDoor
 from scenarios.doors.options import HostOptions

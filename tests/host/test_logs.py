@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from bus.protocol import Device
 from bus.protocol.serial import NO_SETPOINT, AxisSample, Packet
 from host.logs import distort, traces
-from host.logs.ascii import AsciiLogs
 from host.logs.axis import AxisLog
 from host.logs.files import LineFile, LogError, check_space
+from host.logs.journal import AsciiLogs
 
 HEADER = {"axis": "ra", "session": "night", "loop": "closed", "start_utc": "2026-02-10T14:00:00Z"}
 RANDOM = np.random.default_rng(1)

@@ -17,7 +17,7 @@ from host.procedures.pointing import Pointing
 from host.sky.catalogue import Star
 from host.sky.mount import Mount
 from host.sky.observed import Rates
-from host.sky.track import StarTrack
+from host.sky.tracks import StarTrack
 from tests.host.test_client import Desk, ok
 
 STEP_ARCSEC = 1_296_000 / STEPS_PER_TURN

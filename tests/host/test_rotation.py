@@ -5,7 +5,7 @@ from pathlib import Path
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from host.logs.ascii import AsciiLogs, RotatingFile, rotating
+from host.logs.journal import AsciiLogs, RotatingFile
 
 
 @settings(max_examples=30, deadline=None)
@@ -42,7 +42,7 @@ def test_the_oldest_goes_and_an_earlier_session_is_kept(tmp_path: Path) -> None:
 
 def test_the_four_logs_rotate_when_asked(tmp_path: Path) -> None:
     for _ in range(2):
-        logs = AsciiLogs(tmp_path, lambda t: f"{t:.1f}", rotating)
+        logs = AsciiLogs(tmp_path, lambda t: f"{t:.1f}", RotatingFile)
         logs.error(0, "HOST", "something")
         logs.close()
     assert "something" in (tmp_path / "errors.log.1").read_text()

@@ -13,8 +13,9 @@ from plant.gears import ORDERS, RATIO
 from plant.model import load, with_effects
 from plant.parts import EffectModel, Number, PlantModel
 from plant.units import ARCSEC
-from scenarios.language.configure import FORMAT, load_compensation
+from scenarios.language.configure import FORMAT, SCHEMA_FILE, load_compensation
 from scenarios.language.document import ScenarioError
+from scenarios.language.validate import schema
 
 HEAD = "format: schmidt-compensation 1\naxis: ra\nfriction: {steps: 1, travel_arcsec: 1}\n"
 
@@ -33,7 +34,7 @@ def per_step(model: PlantModel) -> float:
 
 def test_both_sides_agree_on_what_they_cannot_share() -> None:
     assert written.FORMAT == FORMAT
-    assert written.LINES == HARMONICS
+    assert written.LINES == HARMONICS == schema(SCHEMA_FILE)["properties"]["lines"]["maxItems"]
 
 
 @pytest.mark.parametrize("phase", [0.0, 0.7, -2.1])

@@ -8,9 +8,9 @@ import numpy as np
 
 from bus.time import generator
 from scenarios.lab.faults.kind import Active, FaultError, Kind
-from scenarios.lab.faults.layers import Evidence
 from scenarios.lab.faults.place import Place
 from scenarios.lab.faults.table import BY_NAME, KINDS
+from scenarios.lab.layers import Evidence
 from scenarios.lab.network import Network
 from scenarios.language.model import Fault
 

@@ -7,8 +7,8 @@ from boards.core import Board, PeriodicBoard
 from boards.core.halt import Halt
 from bus.can import Frame, Port
 from scenarios.lab.faults.kind import FaultError
-from scenarios.lab.faults.layers import Evidence, Laid, Stacks, words
 from scenarios.lab.faults.place import Place
+from scenarios.lab.layers import Evidence, Laid, Stacks, words
 
 
 class Hears(Laid):
@@ -24,6 +24,13 @@ class Hears(Laid):
             self._evidence.act(t_ns, words(frame))
         else:
             self.below(t_ns, frame)
+
+
+class Deaf(Hears):
+    """A board's controller passes nothing on."""
+
+    def __init__(self, place: Place, given: Mapping[str, Any], _t_ns: int) -> None:
+        super().__init__(place, place.board(given["node"]).port)
 
 
 def took_down(board: Board, t_ns: int, evidence: Evidence) -> None:

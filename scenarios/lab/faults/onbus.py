@@ -12,8 +12,8 @@ from bus.can.stuck import StuckDominant
 from bus.can.wire import Disturb
 from bus.protocol import COMMAND_BASE, MEASUREMENT_BASE, REPLY_BASE
 from scenarios.lab.faults.kind import FaultError
-from scenarios.lab.faults.layers import Errors, Laid, words
 from scenarios.lab.faults.place import Place
+from scenarios.lab.layers import Errors, Laid, words
 
 _BUS = "the bus"
 

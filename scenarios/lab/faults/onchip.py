@@ -6,10 +6,9 @@ from typing import Any
 from bus.can import Frame
 from bus.protocol import COMMAND_BASE, REPLY_BASE
 from scenarios.lab.faults.kind import FaultError
-from scenarios.lab.faults.layers import Laid
 from scenarios.lab.faults.onboard import Hears
-from scenarios.lab.faults.onplant import Staged
 from scenarios.lab.faults.place import Place
+from scenarios.lab.layers import Laid, Staged
 
 _ENDAT_BITS = 36  # F1, F2, 29 bits of position, CRC-5 (hardware.md 3.1).
 
@@ -85,7 +84,9 @@ class SerialNoise(Laid):
 class PwmStuck(Staged):
     """The PWM keeps its duties whatever is written."""
 
-    _held: tuple[float, float] | None = None
+    def __init__(self, place: Place, given: Mapping[str, Any], t_ns: int) -> None:
+        self._held: tuple[float, float] | None = None
+        super().__init__(place.network, given["axis"], place.evidence, t_ns)
 
     def duties(self, wanted: tuple[float, float]) -> tuple[float, float]:
         """Those of the beginning."""

@@ -6,38 +6,20 @@ from typing import Any
 from bus.units import ARCSEC_PER_RAD
 from plant.kernels import layout as at
 from scenarios.lab.faults.kind import Active, FaultError
-from scenarios.lab.faults.layers import Watched
 from scenarios.lab.faults.place import Place
-from scenarios.lab.powerstages import AXES
-
-
-class Staged:
-    """The power stage of an axis gives other duties, 0..1 each, than are wanted."""
-
-    def __init__(self, place: Place, given: Mapping[str, Any], t_ns: int) -> None:
-        self._drives, self.given, self.evidence = place.network.stages, given, place.evidence
-        self._queue = place.network.queue
-        self._drives.add(given["axis"], self, t_ns)
-
-    def duties(self, wanted: tuple[float, float]) -> tuple[float, float]:
-        """Of motors A and B."""
-        raise NotImplementedError
-
-    def clear(self, t_ns: int) -> None:
-        """The switches obey again: what was written last counts."""
-        self._drives.remove(self.given["axis"], self, t_ns)
+from scenarios.lab.layers import AXES, Staged, Watched
 
 
 class OneDuty(Staged):
     """One motor whose switches give one duty, whatever is wanted."""
 
     def __init__(self, duty: float, place: Place, given: Mapping[str, Any], t_ns: int) -> None:
-        self._duty = duty
-        super().__init__(place, given, t_ns)
+        self._duty, self._motor = duty, given["motor"]
+        super().__init__(place.network, given["axis"], place.evidence, t_ns)
 
     def duties(self, wanted: tuple[float, float]) -> tuple[float, float]:
         """Of motors A and B."""
-        return (self._duty, wanted[1]) if self.given["motor"] == "a" else (wanted[0], self._duty)
+        return (self._duty, wanted[1]) if self._motor == "a" else (wanted[0], self._duty)
 
 
 class EmergencyStop:
@@ -62,7 +44,7 @@ class _Driven(Staged):
     def duties(self, wanted: tuple[float, float]) -> tuple[float, float]:
         """Those."""
         if any(wanted):
-            self.evidence.act(self._queue.now_ns, f"duties of {self.given['axis']}")
+            self._evidence.act(self._queue.now_ns, f"duties of {self._axis}")
         return wanted
 
 
@@ -106,7 +88,7 @@ class WeakSupply(Turned):
 
     def watch(self, place: Place, axis: str, t_ns: int) -> Active:
         """A motor is driven: it need not move."""
-        return _Driven(place, {"axis": axis}, t_ns)
+        return _Driven(place.network, axis, place.evidence, t_ns)
 
 
 class Play(Turned):

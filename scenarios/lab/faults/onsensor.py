@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from scenarios.lab.faults.kind import FaultError
-from scenarios.lab.faults.layers import Laid
 from scenarios.lab.faults.place import UNITS, Place
+from scenarios.lab.layers import Laid
 
 
 class Sensor(Laid):

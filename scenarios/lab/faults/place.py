@@ -1,37 +1,20 @@
 """Where a fault acts: the network, and what several faults share on it."""
 
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+import yaml
 
 from bus.can.stuck import StuckDominant
 from scenarios.lab.faults.kind import FaultError
-from scenarios.lab.faults.layers import Evidence, Laid, Stacks, chained, turned
+from scenarios.lab.layers import Evidence, Laid, Stacks, turned
 from scenarios.lab.network import Network
 
-_OF_AN_AXIS = {
-    "incremental": ("AXIS_{}", "qei", "pin", None),
-    "absolute": ("POSITION_{}", "endat.encoder", "pin", None),
-    "auxiliary": ("AUXILIARY_{}", "pins", "encoder", None),
-    "tachometer_a": ("MOTOR_{}_A", "qei", "pin", None),
-    "tachometer_b": ("MOTOR_{}_B", "qei", "pin", None),
-    "current_a": ("AXIS_{}", "adc", "pin", 0),
-    "current_b": ("AXIS_{}", "adc", "pin", 1),
-}
-SENSORS: dict[str, tuple[str, str, str, int | None]] = {
-    **{
-        f"{axis}.{sensor}": (board.format(axis.upper()), chip, pin, motor)
-        for axis in ("ra", "dec")
-        for sensor, (board, chip, pin, motor) in _OF_AN_AXIS.items()
-    },
-    "focus.encoder": ("FOCUS", "qei", "pin", None),
-    "focus.index": ("FOCUS", "", "index_pin", None),
-    "focus.lvdt": ("FOCUS", "adc", "pin", None),
-}
-"""Sensor to the board that reads it, the chip on it, the chip's pin, and the motor it is asked for.
-
-`pins` of a declared board is a dict."""
+_ROWS = yaml.safe_load(Path(__file__).with_name("sensors.yaml").read_text(encoding="utf-8"))
+SENSORS: dict[str, tuple[str, str, str, int | None]] = {name: tuple(row) for name, row in _ROWS.items()}
+"""Sensor to the board that reads it, the chip on it, the chip's pin, and the motor it is asked for."""
 UNITS = {"current_a": "A", "current_b": "A", "lvdt": "V", "index": ""}
 """Unit of a sensor's readings; the others count."""
 AXES = ("ra", "dec")
@@ -50,11 +33,15 @@ class Place:
     network: Network
     random: np.random.Generator
     evidence: Evidence
-    layers: Stacks = field(default_factory=lambda: Stacks(chained))
     dials: Stacks = field(default_factory=lambda: Stacks(turned))
     stuck: list[StuckDominant] = field(default_factory=list)
     held: dict[str, int] = field(default_factory=dict)
     halted: dict[str, tuple[Laid, Evidence]] = field(default_factory=dict)
+
+    @property
+    def layers(self) -> Stacks:
+        """What lies on pins and receivers of the network."""
+        return self.network.layers
 
     def board(self, name: str) -> Any:
         """A board of the network; raises FaultError."""

@@ -3,55 +3,22 @@
 Nothing here opens a file, a socket or a program, and no function is admitted for being the project's own.
 """
 
+from pathlib import Path
 from types import BuiltinFunctionType, FunctionType
 from typing import Any, Final
+
+import yaml
 
 from scenarios.lab.nodes import MODULE
 from scenarios.native.modules import PACKAGE
 
-_OURS: Final = (
-    "boards.", "bus.can.", "bus.protocol.", "bus.time.", "bus.outside.node", "host.sky.", "plant.",
-    "scenarios.lab.blowing", "scenarios.lab.chain", "scenarios.lab.faults.", "scenarios.lab.network",
-    "scenarios.lab.nodes", "scenarios.lab.powerstages", "scenarios.lab.snapshot.",
-    "scenarios.doors.usb", "scenarios.language.model", MODULE,
-)  # fmt: skip
-"""Modules whose classes may be in one. MODULE: boards of a user's own, which the scenario loads first."""
-_NOT: Final = ("boards.avr.", "boards.c.library", "boards.c.isolated", "plant.fmu.")
-"""These begin programs. A file of C is built anew, as a user's own board in Python is run."""
-_INNER: Final = ("boards.", "bus.can.", "plant.", "scenarios.lab.faults.", "scenarios.doors.lines", MODULE)
-"""Modules whose functions inside functions may be."""
-_LIBRARIES: Final = ("canopen.", "numpy.random.", "cantools.")
-_HELPERS: Final = {
-    "boards.c.isolated": {"unbuilt"},
-    "boards.core.interrupts": {"_no_routine"},
-    "boards.core.commands": {"_nothing"},
-    "boards.silicon.hid": {"_nobody", "_always"},
-    "bus.protocol.saturate": {"nobody"},
-    "scenarios.lab.faults.layers": {"chained", "turned"},
-    "scenarios.lab.snapshot.code": {"cell", "fill", "finish", "function"},
-    "scenarios.lab.snapshot.freeze": {"_array", "_view"},
-    "numpy.random._pickle": {"__bit_generator_ctor", "__generator_ctor"},
-    "numpy.random.bit_generator": {"__pyx_unpickle_SeedSequence"},
-}
-"""Functions, by module."""
-_STANDARD: Final = {
-    "builtins": {"set", "frozenset", "bytearray", "complex", "range", "slice"},
-    "collections": {"deque", "Counter", "OrderedDict", "defaultdict"},
-    "functools": {"partial"},
-    "pathlib": {"PosixPath", "WindowsPath", "Path"},
-    "datetime": {"datetime", "timezone", "timedelta"},
-    "copyreg": {"__newobj__", "_reconstructor"},
-    "_codecs": {"encode"},
-    "threading": {"Condition", "RLock"},
-    "_thread": {"allocate_lock", "RLock"},
-    "logging": {"getLogger"},
-    "queue": {"Queue"},
-    "struct": {"Struct"},
-    "numpy": {"ndarray", "dtype"},
-    "numpy.core.multiarray": {"scalar", "_reconstruct"},
-    "numpy._core.multiarray": {"scalar", "_reconstruct"},
-}
-"""What of the standard library, and of numpy's own, one is made of."""
+_TABLE: Final = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text(encoding="utf-8"))
+_OURS: Final = (*_TABLE["ours"], MODULE)
+_INNER: Final = (*_TABLE["inner"], MODULE)
+_NOT: Final = tuple(_TABLE["not"])
+_LIBRARIES: Final = tuple(_TABLE["libraries"])
+_HELPERS: Final[dict[str, list[str]]] = _TABLE["helpers"]
+_STANDARD: Final[dict[str, list[str]]] = _TABLE["standard"]
 _METHOD: Final = ("builtins", "getattr")
 """Named for bound methods, and replaced by what looks at its arguments."""
 _HOST: Final = ("scenarios.lab.session", "_tick")

@@ -19,35 +19,6 @@ Heard = list[tuple[str, tuple[Any, ...]]]
 SEEN = "seen"
 
 
-class Ear:
-    """Between the network and who listens: notes what it hands on."""
-
-    def __init__(self, heard: Heard, kind: str, call: Callable[..., None]) -> None:
-        self._heard, self._kind, self._call = heard, kind, call
-
-    def __call__(self, *arguments: Any) -> None:
-        """Note it, and hand it on."""
-        self._heard.append((self._kind, arguments))
-        self._call(*arguments)
-
-
-class Tape:
-    """Records a session from its very start."""
-
-    def __init__(self, session: Session, heard: Heard) -> None:
-        self.heard = heard
-        self.ears = {kind: Ear(heard, kind, call) for kind, call in listeners(session).items()}
-        network = session.network
-        network.hid.to_host = self.ears["usb"]
-        for link in session.serial:
-            network.uarts[link.device.name].sink = self.ears[link.device.name]
-        session.plant._sink = self.ears["truth"]
-        if network.chain is not None:
-            network.chain.told = self.ears["chain"]
-        session.ticked = Ear(heard, "tick", nothing)
-        session.eye.told = Ear(heard, SEEN, nothing)
-
-
 def listeners(session: Session) -> dict[str, Callable[..., None]]:
     """Who hears what comes out of a network."""
     calls: dict[str, Callable[..., None]] = {
@@ -74,7 +45,9 @@ class Order:
 
     at_ns: int
     file: Path
-    tape: Tape | None = None
+    heard: Heard = field(default_factory=list)
+    ears: dict[str, Callable[..., None]] = field(default_factory=dict)
+    """Between the network and who listens."""
     done: bool = False
 
     def begin(self, session: Session, begun: dict[str, Any] | None = None) -> None:
@@ -85,9 +58,23 @@ class Order:
             raise SnapshotError(
                 f"a snapshot at {self.at_ns * 1e-9:g} s: the run is at {now_ns * 1e-9:g} s already"
             )
-        self.tape = Tape(session, [] if begun is None else begun["heard"])
         if begun is not None:
-            session.rows = begun["rows"]
+            self.heard, session.rows = begun["heard"], begun["rows"]
+        ears = self.ears = {kind: self._ear(kind, call) for kind, call in listeners(session).items()}
+        network = session.network
+        network.hid.to_host, session.plant._sink = ears["usb"], ears["truth"]
+        for link in session.serial:
+            network.uarts[link.device.name].sink = ears[link.device.name]
+        if network.chain is not None:
+            network.chain.told = ears["chain"]
+        session.ticked, session.eye.told = self._ear("tick", nothing), self._ear(SEEN, nothing)
+
+    def _ear(self, kind: str, call: Callable[..., None]) -> Callable[..., None]:
+        def hear(*arguments: Any) -> None:
+            self.heard.append((kind, arguments))
+            call(*arguments)
+
+        return hear
 
     def due(self, until_ns: int) -> bool:
         """Whether its time lies before `until_ns`."""
@@ -95,16 +82,15 @@ class Order:
 
     def take(self, session: Session, progress: Progress) -> None:
         """Now; raises LogError when the file cannot be written, SnapshotError."""
-        assert self.tape is not None
         self.done = True
         session.flush_traces()
         session.recorder.can.flush()
-        outside: dict[str, Any] = {**self.tape.ears, **_outside(session)}
+        outside: dict[str, Any] = {**self.ears, **_outside(session)}
         whole = {
             "scenario": session.scenario,
             "model": session.plant.model,
             "progress": progress,
-            "heard": self.tape.heard,
+            "heard": self.heard,
             "can": (session.recorder.folder / "can.log").read_bytes(),
             "rows": session.rows,
             "network": take((session.network, session.faults), outside),

@@ -1,9 +1,6 @@
 """Figures of a run: each takes an outcome and returns a figure, or None when it has nothing to show."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import erfa
 import numpy as np
@@ -14,10 +11,7 @@ from scenarios.language.programme import Record
 from scenarios.run.errors import NoData, pointing_errors, rate_errors
 from scenarios.run.outcome import Outcome
 from scenarios.run.report.pointing_run import guiding, pointing_run
-from scenarios.run.report.style import COLOURS, axes, new_figure, thin, title
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from scenarios.run.report.style import COLOURS, Figure, axes, new_figure, thin, title
 
 _SETTLE_S = 5.0
 

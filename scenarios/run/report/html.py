@@ -1,21 +1,17 @@
 """`report.html`: one page with everything inside, and the figures as files beside it."""
 
-from __future__ import annotations
-
 import base64
 import io
 import platform
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from host.logs.files import write_file
 from scenarios.run.evaluate import Verdict
 from scenarios.run.outcome import Outcome
 from scenarios.run.report.figures import FIGURES
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from scenarios.run.report.style import Figure
 
 _LIBRARIES = ("numpy", "numba", "pyerfa", "python-can", "cantools", "pyarrow", "matplotlib")
 

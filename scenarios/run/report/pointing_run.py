@@ -1,9 +1,5 @@
 """Figures of steps that look at stars: a pointing run's residuals on the sky, what a guide camera saw."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import erfa
 import numpy as np
 
@@ -13,11 +9,7 @@ from host.sky.pointmodel import PointingModel
 from host.sky.pointstars import Stars, stars_of
 from host.sky.pointterms import ZEROS
 from scenarios.run.outcome import Array, Outcome
-from scenarios.run.report.style import COLOURS, axes, new_figure, title
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
+from scenarios.run.report.style import COLOURS, Figure, axes, new_figure, title
 
 _ARROW_DEG = 14.0
 """Length of the longest arrow on the chart, degrees of zenith distance."""

@@ -9,7 +9,9 @@ from scenarios.run.outcome import Array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+    from matplotlib.figure import Figure as Figure
+else:
+    Figure = Any  # matplotlib is of an extra
 
 COLOURS = {
     "ra": "#1f5fa8",

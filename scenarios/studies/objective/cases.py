@@ -163,27 +163,25 @@ def over_paper(rows: Iterable[Row]) -> dict[str, float]:
     }
 
 
-HEADINGS = ("plant and firmware", "mode", "peak, worst", "median", "rms, worst", "angle, worst", "runs", "")
+HEADINGS = "| plant and firmware | mode | peak, worst | median | rms, worst | angle, worst | runs | |"
 
 
-def line(row: Row) -> tuple[str, ...]:
-    """Cells of a row: arcsec/s, and arcsec for the angle."""
+def line(row: Row) -> str:
+    """A row of the page: arcsec/s, and arcsec for the angle."""
     verdict = "printed" if not row.judged else ("met" if row.passed else "missed")
-    return (
-        row.case, row.mode, f"{row.worst:.3f}", f"{float(np.median(row.peaks)):.3f}",
-        f"{max(row.rms):.3f}", f"{max(row.wander):.3f}", str(len(row.peaks)), verdict,
-    )  # fmt: skip
+    numbers = row.worst, float(np.median(row.peaks)), max(row.rms), max(row.wander)
+    cells = (row.case, row.mode, *(f"{each:.3f}" for each in numbers), str(len(row.peaks)), verdict)
+    return f"| {' | '.join(cells)} |"
 
 
-def bound_line(case: str, bound: Bound) -> tuple[str, ...]:
-    """Cells of a bound, which has an rms and no peak."""
-    return (f"{case}, {BOUND}", "", "", "", f"{bound.rms:.3f}", "", "", "bound")
+def bound_line(case: str, bound: Bound) -> str:
+    """A row of a bound, which has an rms and no peak."""
+    return f"| {case}, {BOUND} |  |  |  | {bound.rms:.3f} |  |  | bound |"
 
 
 def markdown(rows: list[Row], command: str, bounds: Mapping[str, Bound]) -> str:
     """The table for docs."""
     text = [f"True rate against 15.041″/s, in ″/s; angle off a straight line, in ″. `{command}`", ""]
-    text += ["| " + " | ".join(HEADINGS) + " |", "|---|---|" + "---:|" * 5 + "---|"]
-    lines = [line(row) for row in rows] + [bound_line(*each) for each in bounds.items()]
-    text += ["| " + " | ".join(cells) + " |" for cells in lines]
+    text += [HEADINGS, "|---|---|" + "---:|" * 5 + "---|"]
+    text += [*map(line, rows), *(bound_line(*each) for each in bounds.items())]
     return "\n".join(text) + "\n"

@@ -36,19 +36,19 @@ def objective(options: ObjectiveOptions) -> int:
     loaded = [] if given is None else load_compensation(given).parameters()
     out.mkdir(parents=True, exist_ok=True)
     rows: list[table.Row] = []
-    console.print(_aligned(table.HEADINGS), highlight=False, soft_wrap=True)
+    console.print(table.HEADINGS, highlight=False, soft_wrap=True)
     with shown("holds", len(chosen) * len(MODES) * options.starts * options.seeds) as show:
         count = itertools.count(1)
         for row in table.measure(chosen, plants, loaded, options, lambda text: show(next(count), text)):
             rows.append(row)
-            console.print(_aligned(table.line(row)), highlight=False, soft_wrap=True)
+            console.print(table.line(row), highlight=False, soft_wrap=True)
     bounds = {
         case.name: bound(case.plant(*plants), wind(case.wind_m_s))
         for case in chosen
         if case.wind_m_s and case.firmware != "paper"
     }
     for each in bounds.items():
-        console.print(_aligned(table.bound_line(*each)), highlight=False, soft_wrap=True)
+        console.print(table.bound_line(*each), highlight=False, soft_wrap=True)
     ratios = table.over_paper(rows)
     for name, ratio in ratios.items():
         console.print(f"{name}: {ratio:.3f} of what {table.PAPER} leaves", highlight=False, soft_wrap=True)
@@ -61,10 +61,6 @@ def objective(options: ObjectiveOptions) -> int:
     }  # fmt: skip
     write_file(out / "objective.json", json.dumps(data, indent=1) + "\n")
     return 0 if all(row.passed for row in rows) and all(ratio <= 1 for ratio in ratios.values()) else 1
-
-
-def _aligned(cells: tuple[str, ...]) -> str:
-    return f"{cells[0]:46}{cells[1]:6}" + "".join(f"{cell:>13}" for cell in cells[2:7]) + "  " + cells[7]
 
 
 def _given(options: ObjectiveOptions) -> list[str]:

@@ -92,13 +92,8 @@ class Row:
     @property
     def reason(self) -> str:
         """What was found; misses first."""
-        missed, met, beside = (
-            "; ".join(self.lines(False)),
-            "; ".join(self.lines(True)),
-            ", ".join(self.beside),
-        )
-        parts = [f"MISS: {missed}" * bool(missed), *self.unevaluated, met]
-        return ". ".join(filter(None, [*parts, f"beside (medians): {beside}" * bool(beside)]))
+        missed, met = ("; ".join(self.lines(side)) for side in (False, True))
+        return ". ".join(filter(None, [f"MISS: {missed}" * bool(missed), *self.unevaluated, met]))
 
     def as_json(self) -> dict[str, Any]:
         """Return the row as the JSON file has it."""

@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 
 from bus.time import generator
-from host.camera.flat import PIXEL_RESPONSE, flat
 from host.camera.light import light
 from host.camera.models import CAMERAS, GUIDE, MAIN, CameraModel, Window
-from host.camera.readout import bloom, read_out
+from host.camera.readout import PIXEL_RESPONSE, bloom, flat, read_out
 from host.camera.seeing import Wander
 from host.camera.stars import stars
 from host.sky.site import NAINITAL

@@ -10,11 +10,10 @@ import pytest
 from bus.units import ARCSEC_PER_RAD
 from host.camera.camera import Order, expose
 from host.camera.models import GUIDE, MAIN, CameraModel, Look, Window
-from host.camera.place import catalogued
 from host.camera.seeing import Wander
-from host.camera.stars import SyntheticSky, separation
+from host.camera.stars import SyntheticSky, catalogued, separation
 from host.sky.site import NAINITAL
-from scenarios.doors.options import DoorOptions
+from scenarios.doors.options import ServeOptions
 from scenarios.lab.eye import look
 from tests.doors.test_cameras import read_out
 from tests.host.camera.test_frames import CLOCK, path
@@ -101,7 +100,7 @@ def test_frames_of_a_served_telescope_are_solved_to_where_its_plant_points(tmp_p
     """Boards track a star on a mount with errors; the truth is read behind the exposures, from the plant."""
     pytest.importorskip("astropy.io.fits", reason="pip install .[camera]")
     rig = Rig()
-    rig.host.open_cameras(DoorOptions(asked={"alpaca": ("0",)}, frames=tmp_path))
+    rig.host.open_cameras(ServeOptions(asked={"alpaca": ("0",)}, frames=tmp_path))
     rig.run(lambda t: t.drive.power_on())
     rig.run(lambda t: t.focuser.reference())
     rig.run(lambda t: t.focuser.move_to(0))  # at f/1 a few half steps make a disc of every star

@@ -12,11 +12,11 @@ from bus.units import ARCSEC, ARCSEC_PER_RAD
 from host.sky import pointmodel
 from host.sky.catalogue import star
 from host.sky.pointfit import FEWEST_STARS, TooFewStars, fit
-from host.sky.pointmodel import PointingFileError, PointingModel
+from host.sky.pointmodel import PointingModel
 from host.sky.pointstars import Sighting
 from host.sky.pointterms import GEOMETRY, TERMS, TEXTS
 from host.sky.site import NAINITAL
-from host.sky.track import StarTrack
+from host.sky.tracks import StarTrack
 from plant.mount import sky
 from plant.parts import MountErrors
 from tests.host.sky.seen import LATITUDE, MOUNT, NAMES, axes, drawn, errors, misses, plain, sightings
@@ -144,7 +144,7 @@ def test_a_broken_file_is_one_line(tmp_path: Path, change: dict[str, object], me
     file = tmp_path / "model.json"
     plain(IH=1.0).save(file)
     file.write_text(json.dumps(json.loads(file.read_text()) | change))
-    with pytest.raises(PointingFileError) as found:
+    with pytest.raises(ValueError) as found:
         read(file)
     assert message in str(found.value)
     assert "\n" not in str(found.value)

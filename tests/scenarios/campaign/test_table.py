@@ -8,7 +8,7 @@ import pytest
 from matplotlib.colors import to_hex
 
 from scenarios.campaign import figures, table
-from scenarios.campaign.sensitivity import influence, share
+from scenarios.campaign.figures import influence, share
 from scenarios.language.document import ScenarioError
 from scenarios.run.report.style import COLOURS
 

@@ -10,7 +10,6 @@ from bus.protocol import pack_command
 from bus.protocol.nodes import DOME, arguments_of
 from plant.kernels import layout as at
 from scenarios.lab.network import Network
-from scenarios.lab.networks import NetworkError
 from scenarios.lab.prepare import prepare
 from scenarios.lab.snapshot.freeze import restore, take
 from scenarios.lab.wiring import wire
@@ -87,7 +86,7 @@ def test_P13_a_broken_sensor_stops_no_wind(tmp_path: Path) -> None:
 
 
 def test_P13_who_has_no_mast_has_no_wind(tmp_path: Path) -> None:
-    with pytest.raises(NetworkError, match=r"^network: wind_from: there is no board WEATHER_MAST"):
+    with pytest.raises(ValueError, match=r"^network: wind_from: there is no board WEATHER_MAST"):
         built(tmp_path, "lab", "")
 
 

@@ -170,7 +170,7 @@ def test_it_is_latched_until_both_axes_are_off(tmp_path: Path) -> None:
     assert bench.lab.ask("AXIS_DEC", "OPEN_LOOP", 1000).result == 0
     bench.lab.run(0.1)
     assert max(bench.duties()) > 0.3, "it drives again"
-    assert bench.lab.network.stages._axes == {}, "nothing is left in the way"
+    assert bench.lab.network.layers._stacks == [], "nothing is left in the way"
 
 
 def test_the_button_stops_everything_whatever_is_broken(tmp_path: Path) -> None:

@@ -16,7 +16,7 @@ from bus.units import ARCSEC_PER_TURN
 from plant.model import load
 from plant.plant import Plant
 from scenarios.lab.network import Network, build
-from scenarios.lab.networks import NetworkConfig, NetworkError, NodeConfig, config_from
+from scenarios.lab.networks import NetworkConfig, NodeConfig, config_from
 
 CENTRE = 1 << 28
 STEP_ARCSEC = ARCSEC_PER_TURN / (1 << 29)
@@ -206,5 +206,5 @@ def test_settings_reach_the_boards() -> None:
     ],
 )
 def test_bad_settings_are_named(config: NetworkConfig, text: str) -> None:
-    with pytest.raises(NetworkError, match=text):
+    with pytest.raises(ValueError, match=text):
         Night(config=config)

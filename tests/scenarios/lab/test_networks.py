@@ -15,7 +15,7 @@ from bus.protocol.serial import AxisSample, PacketDecoder
 from plant.model import load
 from plant.plant import Plant
 from scenarios.lab.network import Network, build
-from scenarios.lab.networks import FINAL, LAB, NETWORKS, SERIAL, NetworkConfig, NetworkError, NodeConfig
+from scenarios.lab.networks import FINAL, LAB, NETWORKS, SERIAL, NetworkConfig, NodeConfig
 from scenarios.lab.prepare import chosen, prepare
 from scenarios.lab.wiring import wire
 from scenarios.language.document import ScenarioError
@@ -217,7 +217,7 @@ def test_B9_declared_boards_send_rs232_packets() -> None:
     ],
 )
 def test_what_a_network_cannot_have_is_one_line(config: NetworkConfig, text: str) -> None:
-    with pytest.raises(NetworkError, match=text):
+    with pytest.raises(ValueError, match=text):
         build(config, Plant(load("low_preload"), 1), 1)
 
 

@@ -17,7 +17,7 @@ from host.sky.catalogue import star
 from host.sky.observed import observe_many
 from host.sky.pointstars import Sighting
 from plant.parts import MountErrors, Number
-from scenarios.lab.faults.layers import Evidence
+from scenarios.lab.layers import Evidence
 from scenarios.language.document import parse
 from scenarios.language.load import convert
 from scenarios.language.model import Expectation

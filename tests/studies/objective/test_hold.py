@@ -64,7 +64,7 @@ def test_a_row_is_judged_on_its_worst() -> None:
     errors = [0.1] * 3
     row = Row(case="x", mode="RATE", peaks=[0.2, 1.2, 0.3], rms=errors, wander=errors, lost=0, judged=True)
     assert not row.passed
-    assert line(row)[2:4] == ("1.200", "0.300")
+    assert "| 1.200 | 0.300 |" in line(row)
     assert row._replace(judged=False).passed
     assert not row._replace(peaks=[0.1], lost=1).passed
 

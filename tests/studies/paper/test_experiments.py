@@ -9,7 +9,7 @@ from scenarios.studies.options import HIGH, LOW
 from scenarios.studies.paper.experiments import closed as in_loop
 from scenarios.studies.paper.experiments import opened as out_of_loop
 from scenarios.studies.paper.experiments.closed import stick_slips
-from scenarios.studies.paper.experiments.frictionmap import CONSTANT_ERROR, Noise
+from scenarios.studies.paper.experiments.friction import CONSTANT_ERROR, Noise
 from scenarios.studies.paper.experiments.identify import FirstOrder, fit, second_order
 from scenarios.studies.paper.experiments.models import RULES
 from scenarios.studies.paper.rows import Row

@@ -6,8 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from plant.model import load, with_effects, with_value
-from scenarios.studies.paper.experiments.friction import RUN_DOWN_SPEEDS
-from scenarios.studies.paper.experiments.frictionmap import Noise, friction_map
+from scenarios.studies.paper.experiments.friction import RUN_DOWN_SPEEDS, Noise, friction_map
 from scenarios.studies.paper.experiments.identify import identify
 from scenarios.studies.paper.friction_map import (
     FrictionFit,

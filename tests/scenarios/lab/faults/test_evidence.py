@@ -6,8 +6,8 @@ from collections.abc import Callable
 import pytest
 
 from bus.protocol import Device, Opcode
-from scenarios.lab.faults.layers import Evidence
 from scenarios.lab.faults.table import KINDS
+from scenarios.lab.layers import Evidence
 from tests.scenarios.lab.faults.lab import EXAMPLES, Lab
 
 PULL = (Device.AXIS_RA, Opcode.OPEN_LOOP)

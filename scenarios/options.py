@@ -1,13 +1,12 @@
-"""Kinds of options that several commands have."""
+"""What a command can be told, as fields of one record: its click options are made of them. Light, no room."""
 
 from collections.abc import Callable
+from dataclasses import MISSING, field, fields
 from functools import wraps
 from pathlib import Path
 from typing import Any
 
 import click
-
-from scenarios.doors.table import DoorKind
 
 PATH = click.Path(path_type=Path)
 
@@ -27,14 +26,53 @@ SPEED = Number(0.01, 1000)
 """`bus.outside.pacer` has the same bounds; not imported here, so that the command starts at once."""
 SEED = click.IntRange(0, 2**63 - 1)
 SECONDS = Number(min=0, min_open=True, max=1e7)
-NETWORK = click.Choice(["lab", "serial", "final"])
+NETWORK: dict[str, Any] = {
+    "type": click.Choice(["lab", "serial", "final"]),
+    "help": "Which boards: the lab's 11, the 5 with RS232, or all 18.",
+}
 """`scenarios/lab/networks.py` has the same; not imported here, for the same reason."""
-network = click.option(
-    "--network", type=NETWORK, help="Which boards: the lab's 11, the 5 with RS232, or all 18."
-)
-runs = click.option(
-    "--runs", type=PATH, default=Path("out/console"), help="Folder of the runs recorded on the console."
-)
+network = click.option("--network", **NETWORK)
+
+
+def option(help: str | None = None, *flags: str, default: Any = None, **settings: Any) -> Any:
+    """A field that `--its-name`, or other flags, give; default MISSING: it has to be given."""
+    return field(default=default, metadata={"flags": flags, "settings": {"help": help, **settings}})
+
+
+def argument(default: Any = None, **settings: Any) -> Any:
+    """A field that stands on the command line without a flag."""
+    return field(default=default, metadata={"settings": {"required": default is MISSING, **settings}})
+
+
+def filled(record: Callable[..., Any]) -> Callable[[Callable[[Any], Any]], Callable[..., Any]]:
+    """The command gets a record: a dataclass with these fields; others come with further decorators."""
+
+    def with_options(command: Callable[[Any], Any]) -> Callable[..., Any]:
+        @wraps(command)
+        def call(**given: Any) -> Any:
+            return command(record(**given))
+
+        for each in reversed(fields(record)):  # type: ignore[arg-type]
+            settings = dict(each.metadata.get("settings", {}))
+            if "flags" in each.metadata:
+                settings |= {"required": True} if each.default is MISSING else {"default": each.default}
+                flags = each.metadata["flags"] or (f"--{each.name.replace('_', '-')}",)
+                call = click.option(*flags, each.name, **settings)(call)
+            elif settings:
+                call = click.argument(each.name, **settings)(call)
+        return call
+
+    return with_options
+
+
+def jobs_option() -> Any:
+    """Processes."""
+    return option("Processes on this machine (default: one per core).", type=click.IntRange(1, 1024))
+
+
+def scheduler_option() -> Any:
+    """A cluster's."""
+    return option("A Dask scheduler instead (the extra cluster).", metavar="tcp://HOST:PORT")
 
 
 def muting(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -52,7 +90,7 @@ def muting(command: Callable[..., Any]) -> Callable[..., Any]:
     )(call)
 
 
-def doors(*kinds: DoorKind[Any]) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+def doors(*kinds: Any) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """An option for each of these doors; the command gets their values as `asked`, by the doors' names."""
 
     def with_options(command: Callable[..., Any]) -> Callable[..., Any]:

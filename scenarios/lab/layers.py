@@ -2,10 +2,14 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from bus.can import Frame
 from bus.can.port import BusError, Port
+from plant.kernels import layout as at
+
+if TYPE_CHECKING:
+    from scenarios.lab.network import Network
 
 
 @dataclass
@@ -34,9 +38,13 @@ class Stacks:
         self._stacks: list[_Stack] = []
 
     def add(self, owner: Any, name: Any, item: Any) -> None:
-        """Put `item` on top of an attribute, or of an entry."""
+        """Put `item` on top of an attribute, or of an entry; a `Staged` one below, so that it comes later."""
         stack = self._find(owner, name)
-        stack.items.append(item)
+        if isinstance(item, Staged):
+            stack.items.insert(0, item)
+            stack.items.sort(key=lambda each: not each.last)
+        else:
+            stack.items.append(item)
         self._put(stack)
 
     def remove(self, owner: Any, name: Any, item: Any) -> None:
@@ -152,6 +160,48 @@ class Watched(Laid):
         elif reading != self._first:
             self._evidence.act(t_ns, f"sample of {self._name}")
         return reading
+
+
+AXES = {"ra": 0, "dec": 1}
+"""Axis to its row of the plant's world."""
+
+
+class Staged(Laid):
+    """Between the PWM of an axis board and its motors: gives other duties, 0..1 each, than are wanted."""
+
+    last = False
+    """Whatever else lies there, this has the last word."""
+
+    def __init__(self, network: "Network", axis: str, evidence: Evidence, t_ns: int) -> None:
+        boards: Any = network.boards
+        self._pwm = boards[f"AXIS_{axis.upper()}"].pwm
+        self._axis, self._evidence, self._queue = axis, evidence, network.queue
+        above, place = self._pwm.drive, AXES[axis] * at.WIDTH + at.DUTY
+        written = network.plant.view[place], network.plant.view[place + 1]
+        self._wanted: tuple[float, float] = above._wanted if isinstance(above, Staged) else written
+        super().__init__(network.layers, self._pwm, "drive")
+        self._again(t_ns, self._pwm.drive)
+
+    def __call__(self, t_ns: int, duty_a: float, duty_b: float) -> None:
+        """In the place of the pin."""
+        self._wanted = duty_a, duty_b
+        duties = self.duties(self._wanted)
+        if duties != self._wanted:
+            self._evidence.act(t_ns, f"duties of {self._axis}")
+        self.below(t_ns, *duties)
+
+    def duties(self, wanted: tuple[float, float]) -> tuple[float, float]:
+        """Of motors A and B."""
+        raise NotImplementedError
+
+    def clear(self, t_ns: int) -> None:
+        """The switches obey again: what was written last counts."""
+        above = self._pwm.drive
+        super().clear(t_ns)
+        self._again(t_ns, above)
+
+    def _again(self, t_ns: int, above: "Staged") -> None:
+        self._pwm.drive(t_ns, *above._wanted)
 
 
 class Errors(Laid):
