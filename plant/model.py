@@ -37,9 +37,9 @@ def load(source: str | Path = DEFAULT) -> PlantModel:
     try:
         text = read_text(path)
     except (FileNotFoundError, TextError) as error:
-        reason = error.strerror if isinstance(error, OSError) else str(error)
+        reason = "no such plant file" if isinstance(error, OSError) else str(error)
         hint = "" if path.suffix else "; " + nearest(str(source), list(own))
-        raise ModelError(f"{source}: cannot read the plant file: {reason}{hint}") from None
+        raise ModelError(f"{source}: {reason}{hint}") from None
     return loads(text, str(source))
 
 

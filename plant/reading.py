@@ -99,7 +99,9 @@ class Reader:
         scaled = value * factor(given, unit)
         slack = 1e-9 * max(abs(low), abs(high))
         if not low - slack <= scaled <= high + slack:
-            raise self.fail(fields["value"], path, f"{value:g} {given} is outside {low:g} to {high:g} {unit}")
+            texts = f"{value:g} {given}", f"{low:g} to {high:g} {unit}"
+            said, limits = (text.removesuffix(" 1") for text in texts)
+            raise self.fail(fields["value"], path, f"{said} is outside {limits}")
         source = self.scalar(fields["source"], path + ".source")
         if not source.strip():
             raise self.fail(fields["source"], path + ".source", "is empty: say where the number comes from")
@@ -170,11 +172,12 @@ class Reader:
         )
         harmonic = 1
         if "harmonic" in given:
-            harmonic = int(self.real(given["harmonic"], path + ".harmonic"))
-            if not 1 <= harmonic <= 1000:
+            number = self.real(given["harmonic"], path + ".harmonic")
+            if number % 1 or not 1 <= number <= 1000:
                 raise self.fail(
                     given["harmonic"], path + ".harmonic", "expected a whole number from 1 to 1000"
                 )
+            harmonic = int(number)
         parameters = (
             self.parameters(given["parameters"], path + ".parameters", effect)
             if "parameters" in given

@@ -59,7 +59,7 @@ def check_regular(path: Path) -> None:
     except ValueError as error:
         if isinstance(error, TextError):
             raise
-        raise TextError(f"has an impossible name: {error}") from None
+        raise TextError("no file can have this name") from None
 
 
 def read_text(path: Path, limit: int = MAX_BYTES) -> str:

@@ -44,6 +44,8 @@ _AGAIN_NS: Final = 500_000
 _BASES: Final = 0x780
 _FIRMWARE: Final = (0x080, 0x100, 0x200, 0x300)
 """Documented frames that come in where they always did."""
+_SYNC_BASES: Final = (0x180, 0x400, 0x480, 0x500)
+"""Where else a SYNC may be: between the documented frames, 0x380 among them, and SDO."""
 _RESET_NODE: Final = 0x81
 _NMT: Final = frozenset((0x01, 0x02, 0x80, _RESET_NODE, 0x82))
 """Start, stop, pre-operational, reset node, reset communication (CiA 301, table 32)."""
@@ -298,7 +300,7 @@ class Voice(canopen.Network):
             raise SdoAbortedError(_RANGE)
         elif index == 0x1003:
             self.history.clear()
-        elif index == 0x1005 and not 0 < value < 0x800:
+        elif index == 0x1005 and not (value == SYNC or (value & _BASES in _SYNC_BASES and value < 0x800)):
             raise SdoAbortedError(_RANGE)
         elif index in (0x1010, 0x1011):
             self._store(index, value)

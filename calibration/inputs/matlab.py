@@ -50,9 +50,8 @@ def _content(path: Path) -> dict[str, Any]:
         return dict(loadmat(path))
     except NotImplementedError:
         raise CalibrationInputError(path, "is MATLAB 7.3 (HDF5); save it with save(..., '-v7')") from None
-    except (OSError, ValueError, TypeError, MatReadError) as error:
-        text = " ".join(str(error).split())
-        raise CalibrationInputError(path, f"is not a MATLAB file this tool reads ({text})") from None
+    except (OSError, ValueError, TypeError, MatReadError):
+        raise CalibrationInputError(path, "is not a MATLAB file this tool reads; save it with -v7") from None
 
 
 def _arrays(path: Path) -> dict[str, Any]:

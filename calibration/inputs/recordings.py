@@ -23,16 +23,14 @@ Columns = dict[str, tuple[Array, Array]]
 def read_mf4(path: Path, wanted: list[str]) -> list[dict[str, Array]]:
     """The wanted channels of an MDF file by their names: one run."""
     from asammdf import MDF
-    from asammdf.blocks.utils import MdfException
 
     try:
         with MDF(path) as file:
             have = sorted(name for name in file.channels_db if name not in ("t", TIME))
             known = (name for name in wanted if name in file.channels_db)
             got = {name: file.get(name, *file.channels_db[name][0]) for name in known}  # of several the first
-    except (MdfException, OSError, ValueError) as error:
-        text = " ".join(str(error).split())
-        raise CalibrationInputError(path, f"is no MDF file that can be read ({text})") from None
+    except Exception:  # asammdf raises whatever its parts meet in a broken file
+        raise CalibrationInputError(path, "is no MDF file that can be read; export it again") from None
     columns = {name: (signal.timestamps, signal.samples) for name, signal in got.items() if name != TIME}
     return [_joined(path, wanted, columns, have)]
 
@@ -60,9 +58,8 @@ def read_mcap(path: Path, wanted: list[str]) -> list[dict[str, Array]]:
                     value = _inside(content, name[len(channel.topic) + 1 :].split("."))
                     if value is not None:
                         rows[name].append(((message.log_time - begin_ns) * 1e-9, value))
-    except (McapError, StructError, ValueError, OSError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise CalibrationInputError(path, f"is no MCAP file that can be read ({reason})") from None
+    except (McapError, StructError, ValueError, OSError):
+        raise CalibrationInputError(path, "is no MCAP file that can be read; record it again") from None
     arrays = {name: np.array(found, dtype=float) for name, found in rows.items() if found}
     columns = {name: (both[:, 0], both[:, 1]) for name, both in arrays.items()}
     return [_joined(path, wanted, columns, sorted(have))]

@@ -85,8 +85,13 @@ class _Way:
         return failed
 
     def heard(self, axis: Device) -> Procedure:
-        """Until the axis has said anything at all."""
-        yield from self.client.until("no frame", lambda: axis in self.link.measurements, _HEARD_S)
+        """Until the axis has said anything at all; CANopen's nodes do after the host's first report."""
+        try:
+            yield from self.client.until("no frame", lambda: axis in self.link.measurements, _HEARD_S)
+        except ClientError:
+            with suppress(ClientError):
+                yield from self.client.ask(axis, Opcode.PING)
+            yield from self.client.until("no frame", lambda: axis in self.link.measurements, _HEARD_S)
 
     def move(self, axis: Device, goal: int) -> Procedure:
         """To a place, steps, and at rest there."""

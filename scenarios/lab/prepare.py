@@ -121,7 +121,10 @@ def prepare(source: Path | Document, changes: Changes | None = None) -> tuple[Sc
     check_boards(scenario)
     if changes.firmware is not None:
         scenario = with_firmware(scenario, changes.firmware)
-    model = plant_model(scenario.plant, scenario.file.parent)
+    try:
+        model = plant_model(scenario.plant, scenario.file.parent)
+    except ScenarioError as error:
+        raise ScenarioError(f"{scenario.file}: {error}" if changes.plant is None else str(error)) from None
     return completed(scenario, model), model
 
 

@@ -14,7 +14,7 @@ from scenarios.lab.blowing import Blowing, in_the_wind
 from scenarios.lab.chain import SWITCHES, chained
 from scenarios.lab.faults.live import Faults
 from scenarios.lab.network import Network, build
-from scenarios.lab.networks import config_from
+from scenarios.lab.networks import NetworkError, config_from
 from scenarios.lab.prepare import chosen
 from scenarios.language.model import Scenario
 
@@ -36,7 +36,10 @@ def powered(scenario: Scenario, model: PlantModel) -> Network:
     built = with_air(with_stops(built, soft_rad), scenario.site.temperature_c)
     pins = Plant(built, scenario.seed, start_steps(scenario))
     config = config_from(scenario.network, limits, scenario.file.parent)
-    made = build(config, pins, scenario.seed, scenario.site.humidity)
+    try:
+        made = build(config, pins, scenario.seed, scenario.site.humidity)
+    except NetworkError as error:
+        raise NetworkError(f"{scenario.file}: {error}") from None
     made.chain = chained(made, soft_rad, scenario.network.get("chain", SWITCHES))
     if wind_from is not None:
         made.blowing = Blowing(made, wind_from / ARCSEC_PER_RAD)

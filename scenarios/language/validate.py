@@ -137,7 +137,9 @@ def _meant(error: Any) -> Any:
 def _choice(field: str, error: Any) -> str:
     """Steps, faults and expectations hold exactly one of several keys."""
     keys = [each["required"][0] for each in error.validator_value if "required" in each]
-    if keys and isinstance(error.instance, Mapping):
+    if keys and not isinstance(error.instance, Mapping):
+        return ""  # its type is reported already
+    if keys:
         given = [key for key in keys if key in error.instance]
         if not given:
             if set(error.instance) - set(error.schema.get("properties", {})):
@@ -145,7 +147,7 @@ def _choice(field: str, error: Any) -> str:
             return f"{field}: says nothing to do; use one of {', '.join(keys)}"
         return f"{field}: holds {' and '.join(given)}, but only one is allowed"
     forms = [each.get("title", each.get("type", "?")) for each in error.validator_value]
-    return f"{field}: {error.instance!r} is neither {' nor '.join(map(str, forms))}"
+    return f"{field}: {_found(error.instance)} is neither {' nor '.join(map(str, forms))}"
 
 
 def _found(value: object) -> str:
@@ -153,6 +155,8 @@ def _found(value: object) -> str:
         return "nothing"
     if isinstance(value, Mapping):
         return "a block of fields"
+    if isinstance(value, bool):
+        return str(value).lower()
     return f"a list of {len(value)}" if isinstance(value, list) else repr(value)
 
 

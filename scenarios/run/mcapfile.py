@@ -73,7 +73,9 @@ def _named(path: Path) -> Iterator[None]:
     try:
         yield
     except (OSError, ValueError, TypeError, LookupError, AttributeError, ArithmeticError, csv.Error) as error:
-        raise ValueError(f"{path}: is not as a run has left it ({type(error).__name__}: {error})") from None
+        missing = isinstance(error, KeyError) and f": {error} is missing"
+        why = (isinstance(error, OSError) and error.strerror and f": {error.strerror.lower()}") or missing
+        raise ValueError(f"{path}: is not as a run has left it{why or ''}") from None
 
 
 def _told(read: Callable[[Path], Iterator[Entry]], path: Path) -> Generator[Entry, None, None]:
@@ -159,6 +161,8 @@ def summary_of(folder: Path) -> dict[str, Any]:
         found: dict[str, Any] = json.loads(read_text(folder / SUMMARY))
     except FileNotFoundError:
         raise ValueError(f"{folder}: no {SUMMARY}: give the output folder of schmidt run") from None
+    except json.JSONDecodeError as error:
+        raise ValueError(f"{folder / SUMMARY}:{error.lineno}: is not JSON, as a run leaves it") from None
     except ValueError as error:
         raise ValueError(f"{folder / SUMMARY}: {error}") from None
     return found

@@ -1,13 +1,17 @@
 """The same drive as CSV, MCAP and MF4: calibrate finds the same part in all of them."""
 
 import json
+import re
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from scipy.io import savemat
 
 from calibration.command import calibrate
+from calibration.errors import CalibrationInputError
 from tests.calibration.test_rotary import RIG, night
 
 BEGIN_NS = 1_770_732_000_000_000_000
@@ -68,3 +72,21 @@ def test_calibrate_finds_the_same_in_every_format(tmp_path: Path) -> None:
         assert found[kind]["name"] == "damaged_tooth"
         for name, parameter in found["csv"]["parameters"].items():
             assert found[kind]["parameters"][name]["value"] == pytest.approx(parameter["value"], rel=1e-6)
+
+
+@pytest.mark.parametrize(("write", "kind"), [(write_mf4, "mf4"), (write_mcap, "mcap"), (savemat, "mat")])
+@pytest.mark.parametrize("share", [0.0, 0.1, 0.6])
+def test_a_recording_cut_short_is_one_line_without_a_librarys_words(
+    write: Callable[[Path, Any], None], kind: str, share: float, tmp_path: Path
+) -> None:
+    file = tmp_path / f"log.{kind}"
+    t = 0.01 * np.arange(1000.0)
+    write(file, {"time": t, "x": t, "u": t})
+    file.write_bytes(file.read_bytes()[: round(share * file.stat().st_size)])
+    rig = RIG.replace("column: t,", "column: time,")
+    (tmp_path / "rig.yaml").write_text(rig)
+    with pytest.raises(CalibrationInputError) as caught:
+        calibrate([file], tmp_path / "rig.yaml", [], tmp_path / "out", plots=False)
+    said = str(caught.value)
+    assert said.startswith(str(file)) and "\n" not in said
+    assert re.search(r"; (export|record|save) it", said) or said.endswith("is empty"), said

@@ -2,10 +2,13 @@
 
 import os
 import signal
+from pathlib import Path
 
+import can
 import pytest
 
-from bus.protocol import Device, Opcode, SpeedClass, pack_command
+from bus.outside.lockstep import LockstepBus
+from bus.protocol import COMMAND_BASE, Device, Opcode, SpeedClass, pack_command
 from bus.protocol.report import pack_report
 from host.sky.mount import STEP_ARCSEC
 from scenarios.doors.livenetwork import LiveNetwork
@@ -48,6 +51,30 @@ def test_parks_however_far_it_is_and_says_so(served: LiveNetwork) -> None:
     said: list[str] = []
     assert park(served, said.append) == "parked, motors off"
     assert said == [BEGUN]
+    assert max(off_park(served)) < NEAR_ARCSEC
+
+
+def test_nodes_that_an_outside_master_has_silenced_are_started_and_parked(tmp_path: Path) -> None:
+    file = tmp_path / "canopen.yaml"
+    file.write_text(
+        "name: x\nstart_utc: 2026-02-10T14:00:00Z\nnetwork: {canopen: true}\nsteps:\n  - power_on: {}\n"
+    )
+    served = LiveNetwork(*chosen(file))
+    master = LockstepBus(served.network.wire, lambda _message: None)
+
+    def say(identifier: int, data: bytes) -> None:
+        master.send(can.Message(arbitration_id=identifier, data=data, is_extended_id=False))
+        served.run_until(served.now_ns + 1_000 * MS)
+
+    served.run_until(1_000 * MS)
+    say(0, b"\x01\x00")
+    for axis in AXES:
+        say(COMMAND_BASE + axis, pack_command(axis, Opcode.POWER, 1))
+        say(COMMAND_BASE + axis, pack_command(axis, Opcode.SET_CLASS, SpeedClass.SLEW, 1))
+    say(0, b"\x80\x00")
+    master.shutdown()
+    assert min(off_park(served)) > 3600
+    assert park(served, lambda _line: None) == "parked, motors off"
     assert max(off_park(served)) < NEAR_ARCSEC
 
 

@@ -62,7 +62,7 @@ def _gears(shell: Shell) -> None:
 
 def _encoders(shell: Shell) -> None:
     with box("Encoders"):
-        fill = table(("axis", "shaft, ″", "auxiliary", "difference", "combined"))
+        fill = table(("axis", "shaft, ″", "auxiliary", "apart", "combined"))
         ui.label(
             "Combined: the mean weighted by inverse variances, the best linear unbiased estimate of two"
             f" independent readings. σ is {ABSOLUTE_ARCSEC:.2f}″ on the shaft and"

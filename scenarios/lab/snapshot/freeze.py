@@ -181,5 +181,5 @@ def restore(data: bytes, outside: Mapping[str, Any] | None = None, refused: tupl
         return _Unpickler(io.BytesIO(body), outside or {}, refused).load()
     except SnapshotError:
         raise
-    except Exception as error:  # a pickle that was cut or changed raises nearly anything
-        raise SnapshotError(f"snapshot: damaged: {' '.join(str(error).split())}") from None
+    except Exception:  # a pickle that was cut or changed raises nearly anything
+        raise SnapshotError("snapshot: damaged; take it again") from None

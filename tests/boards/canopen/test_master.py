@@ -109,6 +109,8 @@ def test_parameters_come_by_pdo_at_the_next_sync(bench: Bench) -> None:
         (0x1011, 1, int.from_bytes(b"save", "little"), 0x08000020),
         (0x1014, 0, 0x191, 0x06010002),
         (0x1000, 0, 1, 0x06010002),
+        (0x1005, 0, 0x85, 0x06090030),  # where commands are: it would never be heard as SYNC
+        (0x1005, 0, 0x611, 0x06090030),
         (0x1005, 1, 0x80, 0x06090011),
         (0x1016, 5, 0x7F0064, 0x06090011),
     ],

@@ -21,6 +21,8 @@ from tests.host.console.conftest import PATHS, SHOTS, Consoles, choose, opened, 
 
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(1800)]
 SIZES = {"desk": (1400, 1000), "phone": (390, 844)}
+NARROW = (1408, 360)
+"""Pages whose cards are narrowest: four columns of 21 rem side by side, and a small phone."""
 REDRAW_MS = 1200
 """Plots are drawn anew once a second."""
 FIT_MS = 300
@@ -158,6 +160,10 @@ def test_every_page_of_every_state(browser: Any, observatory: Observatory) -> No
 def photographed(page: Any, name: str) -> list[str]:
     """Four pictures; what is wrong with them, a line each."""
     found = []
+    for width in NARROW:
+        page.set_viewport_size({"width": width, "height": 800})
+        page.wait_for_timeout(FIT_MS)
+        found += [f"{name}, {width} px: something runs out of {each}" for each in page.evaluate(_WIDE)]
     for mode in ("night", "day"):
         page.wait_for_timeout(REDRAW_MS)
         for size, (width, height) in SIZES.items():

@@ -113,6 +113,12 @@ REFUSED: tuple[tuple[str, str], ...] = (
     ("bit rate beyond CAN's", BASE + "network: {bitrate: 2 Mbit/s}\n"),
     ("program for an AVR beside RS232", BASE + "network: {nodes: {AXIS_RA: {firmware: x.elf}}}\n"),
     ("program for an AVR beside USB", BASE + "network: {nodes: {GATEWAY: {firmware: x.elf}}}\n"),
+    ("step that is a list", step("[power_on]")),
+    ("step that is nothing", step("~")),
+    ("override that is true", overriding("axes.ra.inertia: true")),
+    ("override of nothing", overriding("axes.ra.nose: 1")),
+    ("half a harmonic", BASE + "plant: {file: low-preload, effects: [{name: gear_mesh, stage: mesh1, "
+        "harmonic: 2.5}]}\n"),
     ("nothing", ""),
     ("a number", "3"),
     ("a tab", "\t"),

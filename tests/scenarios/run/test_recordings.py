@@ -155,6 +155,7 @@ def test_a_file_that_no_run_has_left_so_is_named(
     ) as caught:
         export(folder, tmp_path / "run.mcap")
     assert "\n" not in str(caught.value)
+    assert not re.search(r"Error|char \d|literal|object", str(caught.value)), "Python's words"
 
 
 def test_a_fault_stands_where_it_first_acted() -> None:
