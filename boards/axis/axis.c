@@ -7,7 +7,7 @@
  */
 #include "firmware.h"
 
-_Static_assert(-1 >> 1 == -1, "a right shift has to keep the sign");
+typedef char a_right_shift_keeps_the_sign[-1 >> 1 == -1 ? 1 : -1]; /* C99: the chip's own compiler is a GCC 4.5 */
 
 #define INT32_TOP INT32_C(0x7FFFFFFF)
 #define Q16 INT32_C(65536)

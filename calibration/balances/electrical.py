@@ -1,6 +1,6 @@
 """The electrical balance of two motors: duty times supply less R i less K omega, both motors stacked.
 
-A motor pulls one way only: dragged backwards it has no back-EMF but by its diode (`diode_braking`).
+A motor pulls one way only. Dragged backwards it has a back-EMF by a diode alone, declared or `diode_braking`.
 """
 
 from dataclasses import replace
@@ -32,7 +32,7 @@ def electrical_problem(
     effort, known = frame.filled("effort")
     bad = frame.transients() | ~known | ~m.ok | (m.speed == 0)
     spins, engaged = zip(*(_spin(frame, m, key, softness) for key in "ab"), strict=True)
-    w = _windings(frame, m, effort, np.concatenate(spins))
+    w = _windings(frame, m, effort, np.concatenate(spins), declared)
     assert w.counter is not None
     volts = np.split(w.duty * w.supply, 2)
     driving_volts, opened = volts, 1.0 - w.duty
@@ -56,9 +56,10 @@ def electrical_problem(
         step=STEP * frame.scale["adc_A_per_count"] * declared.resistance,
     )
     add_bridge(problem, w, frame, effort)
-    # turned against its pull, a leading motor's back-EMF drives its current where the bridge lets it
-    driving = -np.where(w.counter.lagging > 0, 0.0, w.counter.dragged)
-    adopt(problem, driving, "emf_of_a_dragged_leader", "N m/A", declared.torque_constant / 2)
+    if not declared.diode_drop:
+        # turned against its pull, a leading motor's back-EMF drives its current where the bridge lets it
+        driving = -np.where(w.counter.lagging > 0, 0.0, w.counter.dragged)
+        adopt(problem, driving, "emf_of_a_dragged_leader", "N m/A", declared.torque_constant / 2)
     if declared.ripple is None:
         add_sampling(problem, w, frame.scale["adc_A_per_count"])
     fit = problem.named(problem.fit())
@@ -67,21 +68,22 @@ def electrical_problem(
     return Volts(problem=problem, windings=w, constant_error=constant.error)
 
 
-def _windings(frame: Frame, m: Motion, effort: Array, spin: Array) -> Windings:
+def _windings(frame: Frame, m: Motion, effort: Array, spin: Array, declared: Declared) -> Windings:
     """Both motors' columns; `spin` (2 n_analysis,) rad/s the way each pulls."""
+    dragged = np.zeros_like(spin) if declared.diode_drop else np.maximum(-spin, 0.0)
     logged = frame.get("supply") is not None
     supply = frame.filled("supply")[0] if logged else np.full(len(effort), frame.scale["supply_V"])
     return Windings(
         at=lambda full: np.concatenate([m.at(x) for x in np.split(full, 2)]),
         current=np.concatenate([frame.filled(f"current_{k}")[0] for k in "ab"]),
-        rate=np.maximum(spin, 0.0),
+        rate=spin + dragged,
         clock=np.tile(frame.one_clock[m.rows], 2),
         duty=duties(frame, effort),
         supply=np.tile(supply, 2),
         counter=Counter(
             share=shares(frame, effort),
             lagging=np.concatenate([side * m.at(effort) < 0 for side in (1.0, -1.0)]).astype(float),
-            dragged=np.maximum(-spin, 0.0),
+            dragged=dragged,
         ),
     )
 
@@ -106,7 +108,9 @@ def _spin(frame: Frame, m: Motion, key: str, softness: float) -> tuple[Array, Ma
 def _conducts(frame: Frame, m: Motion, key: str, volts: Array, declared: Declared) -> Mask:
     """Rows (n,) whose current is measured: known, not cut off at zero, and not at the converter's end."""
     current, known = frame.filled(f"current_{key}")
-    pull = np.maximum(m.speed if key == "a" else -m.speed, 0.0) * frame.scale["gear_ratio"]
+    pull = (m.speed if key == "a" else -m.speed) * frame.scale["gear_ratio"]
+    pull = pull if declared.diode_drop else np.maximum(pull, 0.0)
     expected = (volts - declared.torque_constant * pull) / declared.resistance
-    flows = (volts > 0) & (expected >= CLIPPED * frame.scale["adc_A_per_count"])
+    flows = (volts > 0) | bool(declared.diode_drop)
+    flows &= expected >= CLIPPED * frame.scale["adc_A_per_count"]
     return np.asarray(known & flows & ~frame.saturated(current))

@@ -24,7 +24,7 @@ class Counter:
     """What two motors add, motor A's rows before motor B's.
 
     At full rate (2 n,): `share` of the effort that is a duty, 1 where it leads. Fitted (2 n_analysis,):
-    `lagging` 1 with the counter torque, `dragged` rad/s against its pull.
+    `lagging` 1 with the counter torque, `dragged` rad/s against its pull where no diode is declared.
     """
 
     share: Array
@@ -38,9 +38,9 @@ class Windings:
 
     At full rate (n,): current A; duty, and the supply V that it is of, empty where volts are measured. `at`
     takes such columns to the fitted rows. On these (n_fitted,): rate of the motor that makes back-EMF (of two
-    motors rad/s while it turns the way it pulls, else zero). Also (n_fitted,): clock s, and the time in every
-    file where files are several runs of a rig. resistance ohm, constant V per unit of the rate: fitted
-    without any effect.
+    motors rad/s the way it pulls, zero where it is dragged and no diode is declared). Also (n_fitted,): clock
+    s, and the time in every file where files are several runs of a rig. resistance ohm, constant V per unit
+    of the rate: fitted without any effect.
     """
 
     at: Callable[[Array], Array]

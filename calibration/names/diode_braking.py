@@ -6,7 +6,7 @@ from calibration.names.name import VOLTS, Candidate, Name, Scene, candidate
 def columns(s: Scene) -> list[Candidate]:
     """Back-EMF of one of two motors that is dragged backwards."""
     w = s.windings
-    if w is None or w.counter is None:
+    if w is None or w.counter is None or not w.counter.dragged.any():
         return []
     return [candidate(NAME.name, -w.constant * w.counter.dragged, "share", sign=1)]
 

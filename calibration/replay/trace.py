@@ -37,12 +37,16 @@ class Loop:
     gains: Gains | None
 
     def measured(self, rows: Mask) -> Trace:
-        """What the log says on the rows of one run; NaN where it has no row or no such column."""
-        nothing = np.full(int(rows.sum()), np.nan)
+        """What the log says on the rows of one run. NaN where it has no row or no such column, and of the
+        torque where a converter is at its end."""
+        torque = np.full(int(rows.sum()), np.nan)
         ia, ib, v = (self.frame.get(name) for name in ("current_a", "current_b", "velocity"))
+        if ia is not None and ib is not None:
+            ended = self.frame.saturated(ia) | self.frame.saturated(ib)
+            torque = np.where(ended, np.nan, self.per_ampere * (ia - ib))[rows]
         return Trace(
-            torque=self.per_ampere * (ia[rows] - ib[rows]) if ia is not None and ib is not None else nothing,
-            velocity=v[rows] / ARCSEC if v is not None else nothing,
+            torque=torque,
+            velocity=v[rows] / ARCSEC if v is not None else np.full(len(torque), np.nan),
             position=self.frame.columns["position"][rows] / ARCSEC,
         )
 

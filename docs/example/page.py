@@ -62,8 +62,8 @@ It was {truth}. The corrected plant has these effects:
 The report gives the phase of the torque that the motors supply against an effect, as a cosine. The plant file
 gives that of the torque on the axis, as a sine.
 
-The drive is `low_preload` with that one effect added. `seal.py` made the runs, and `page.py` this page. A
-test, `tests/docs/test_example.py`, repeats the calibration and compares it with the seal.
+The drive is `low_preload_bridge` with that one effect added. `seal.py` made the runs, `page.py` this page.
+A test, `tests/docs/test_example.py`, repeats the calibration and compares it with the seal.
 """
 
 

@@ -1,8 +1,8 @@
 """`python docs/example/seal.py`: drive three runs on a plant with an effect no plant file has.
 
 Writes run1.csv to run3.csv and truth.json beside this file and prints the SHA-256 of truth.json. To be
-repeated, with page.py after it, whenever the plant file low_preload changes: that file is what the finder
-takes as declared.
+repeated, with page.py after it, whenever the plant file low_preload_bridge changes: that file is what the
+finder takes as declared.
 """
 
 import hashlib
@@ -35,7 +35,7 @@ def schmidt(*words: str | Path) -> None:
 
 def main() -> None:
     """Write the logs and the truth."""
-    model = load("low_preload")
+    model = load("low_preload_bridge")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         plant = folder / "plant.yaml"

@@ -1,4 +1,4 @@
-"""A network in your own process: `with schmidt.Lab("lab", plant="low_preload", seed=1) as lab:`."""
+"""A network in your own process: `with schmidt.Lab("lab", seed=1) as lab:`."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ from scenarios.lab.blowing import Blowing, in_the_wind
 from scenarios.lab.chain import SWITCHES, chained
 from scenarios.lab.faults.live import Faults
 from scenarios.lab.network import Network, build
-from scenarios.lab.networks import NetworkError, config_from
+from scenarios.lab.networks import config_from
 from scenarios.lab.prepare import chosen
 from scenarios.language.model import Scenario
 

@@ -14,6 +14,7 @@ from calibration.balances.torque import WIDTH
 from calibration.inputs.axislog import read_axis_log
 from calibration.inputs.declaredplant import declared_numbers
 from calibration.statistics.regression import gls
+from calibration.statistics.tails import rms
 from plant.loop import Excitation, simulate
 from plant.model import dump
 from tests.calibration.logs import write_log
@@ -41,8 +42,13 @@ def test_the_drop_of_the_diode_is_found_beside_resistance_and_constant(tmp_path:
     assert e is not None
     p = e.problem
     fit = p.named(p.fit())
-    assert fit["diode_drop"].value == pytest.approx(0.7, rel=0.1)  # the plant's
-    assert fit["resistance"].value == pytest.approx(declared.resistance, rel=0.1)
+    assert fit["diode_drop"].value == pytest.approx(0.7, rel=0.01)  # the plant's
+    assert fit["resistance"].value == pytest.approx(declared.resistance, rel=0.01)
+    assert fit["torque_constant"].value == pytest.approx(declared.torque_constant, rel=0.01)
+    # a motor that is dragged is the same circuit: its rows are in, and nothing is left for `diode_braking`
+    dragged = p.valid & (e.windings.rate < -1.0)
+    assert e.windings.counter is not None and not e.windings.counter.dragged.any()
+    assert dragged.sum() > 500 and rms(p.fit().residual[dragged]) < 0.01
     bare = np.delete(p.base, p.place("diode_drop"), axis=1)
     without = gls(p.y, bare, p.train, p.ar_order, p.block)
     missed = abs(without.beta[p.place("torque_constant")] - declared.torque_constant)

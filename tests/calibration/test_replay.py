@@ -15,7 +15,7 @@ from calibration.inputs.axislog import read_axis_log
 from calibration.replay.compare import breaking, comparable
 from calibration.replay.gains import identify
 from calibration.replay.held import replay
-from calibration.replay.trace import ticks
+from calibration.replay.trace import Loop, ticks
 from plant.gears import RATIO
 from plant.loop import Excitation, simulate
 from plant.model import default_files, load, with_effects, with_value
@@ -41,6 +41,18 @@ def test_gains_of_the_controller_come_out_of_the_log(frame: Frame) -> None:
     assert found is not None
     assert found.kp == pytest.approx(declared.kp.si, rel=0.02)
     assert found.ki == pytest.approx(declared.ki.si, rel=0.02)
+
+
+def test_a_converter_at_its_end_says_nothing_of_the_torque(frame: Frame) -> None:
+    ended = replace(frame, columns=frame.columns | {"current_a": frame.columns["current_a"].copy()})
+    ended.columns["current_a"][100:150] = frame.scale["adc_end_A"]
+    both = [
+        Loop(frame=each, axis="ra", per_ampere=PER_AMPERE, gains=None).measured(frame.run >= 0).torque
+        for each in (frame, ended)
+    ]
+    assert np.isfinite(both[0][100:150]).all() and np.isnan(both[1][100:150]).all()
+    both[0][100:150] = np.nan
+    assert np.array_equal(*both, equal_nan=True)
 
 
 def test_gains_and_replay_of_a_roller_of_another_size(tmp_path: Path) -> None:

@@ -24,7 +24,7 @@ BOARDS = (Device.DISPLAY, Device.MOTOR_RA_A)
 
 
 def found(devices: tuple[Device, ...] = BOARDS) -> list[CheckResult]:
-    made = build(NetworkConfig(canopen=True), Plant(load("low_preload"), 1), 1)
+    made = build(NetworkConfig(canopen=True), Plant(load(), 1), 1)
     with SchmidtBus(made.wire) as bus:
         settings = Settings(canopen=True, stamps_s=0.0, period_tolerance=0.002)
         results = run(bus, devices=[board_of(device) for device in devices], settings=settings)
@@ -48,7 +48,7 @@ from plant.model import load
 from plant.plant import Plant
 from scenarios.lab.network import build
 from scenarios.lab.networks import NetworkConfig
-made = build(NetworkConfig(canopen=True), Plant(load("low_preload"), 1), 1)
+made = build(NetworkConfig(canopen=True), Plant(load(), 1), 1)
 publish("kit", made.wire)
 """
 

@@ -66,7 +66,7 @@ def test_H5_readings_that_cannot_both_be_right_are_not_averaged() -> None:
 def test_H5_on_the_final_network_both_encoders_agree_within_what_is_stated(rate: float) -> None:
     """At rest and under way; the emulated encoders have no errors, what is left is step and time."""
     start = {"ra": 1 << 28, "dec": 200_000_000}
-    network = build(NetworkConfig(name="final"), Plant(load("low_preload"), 3, start), 3)
+    network = build(NetworkConfig(name="final"), Plant(load(), 3, start), 3)
     link = HidLink(network.hid.write)
     network.hid.to_host = link.receive
     client = Client(link, Journal(None))

@@ -19,7 +19,7 @@ FILE = Path(__file__).parents[3] / "scenarios" / "quick-look.yaml"
 def session(tmp_path: Path) -> Session:
     scenario = convert(read(FILE))
     scenario = replace(scenario, network={**scenario.network, "canopen": True})
-    return Session(scenario, load("low_preload"), tmp_path)
+    return Session(scenario, load(), tmp_path)
 
 
 def test_every_step_of_a_night_is_done(session: Session) -> None:
@@ -37,7 +37,7 @@ def test_verdicts_are_those_of_the_run_without(tmp_path: Path) -> None:
     scenario = convert(read(FILE))
     master = replace(scenario, network={**scenario.network, "canopen": True})
     plain, started = (
-        run(each, load("low_preload"), tmp_path / name, lambda *_: None).verdicts
+        run(each, load(), tmp_path / name, lambda *_: None).verdicts
         for name, each in (("plain", scenario), ("canopen", master))
     )
     assert [(v.name, v.passed) for v in started] == [(v.name, v.passed) for v in plain]

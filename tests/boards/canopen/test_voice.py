@@ -27,7 +27,7 @@ class Bench:
 
     def __init__(self, folder: Path) -> None:
         sheets = {file.stem: str(file) for file in write_eds(folder)}
-        self.plant = Plant(load("low_preload"), 1)
+        self.plant = Plant(load(), 1)
         self.made: Network = build(NetworkConfig(canopen=True), self.plant, 1)
         self.master = canopen.Network()
         self.bus = LockstepBus(self.made.wire, self.hear)
@@ -231,7 +231,7 @@ def test_an_eds_per_board_type(tmp_path: Path) -> None:
 
 
 def test_a_network_without_it_is_as_it_was() -> None:
-    made = build(NetworkConfig(), Plant(load("low_preload"), 1), 1)
+    made = build(NetworkConfig(), Plant(load(), 1), 1)
     assert made.voices == {}
 
 

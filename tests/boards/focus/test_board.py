@@ -31,7 +31,7 @@ class Bench:
     def __init__(self, start: float) -> None:
         self.queue = EventQueue()
         wire = Wire(self.queue)
-        self.port = FocusPort(load("low_preload").focus, start)
+        self.port = FocusPort(load().focus, start)
         self.coils: list[tuple[int, int, bool, bool]] = []
         pins = FocusPins(
             coils=self.drive, encoder=self.port.encoder, index=self.port.index, lvdt=self.port.lvdt

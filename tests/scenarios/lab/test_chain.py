@@ -31,7 +31,7 @@ class Bench:
     """An axis that slews towards an end of its travel."""
 
     def __init__(
-        self, folder: Path, chain: str, axis: str, plant: str = "low-preload", more: str = ""
+        self, folder: Path, chain: str, axis: str, plant: str = "low-preload-bridge", more: str = ""
     ) -> None:
         random = generator(len(plant), f"{chain}.{axis}")
         self.axis, self.board = axis, f"AXIS_{axis.upper()}"

@@ -30,7 +30,7 @@ def test_time_goes_on_when_one_says_and_only_then() -> None:
 
 
 def test_what_the_board_says_what_it_reads_and_the_truth_agree() -> None:
-    lab = pulling(plant="low_preload", seed=1).run("0.5 s")
+    lab = pulling(seed=1).run("0.5 s")
     truth, heard = lab.truth("ra"), lab.signals("POSITION_RA_POSITION")
     assert np.diff(truth["t_s"]) == pytest.approx(0.01)
     assert truth["t_s"][-1] == pytest.approx(lab.now_s, abs=0.011)

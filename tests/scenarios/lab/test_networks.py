@@ -31,7 +31,7 @@ class Site:
 
     def __init__(self, **inputs: dict[str, float | list[dict[str, float]]]) -> None:
         nodes = {name: NodeConfig(inputs=given) for name, given in inputs.items()}
-        plant = Plant(load("low_preload"), 1, {"ra": 1 << 28, "dec": 1 << 27})
+        plant = Plant(load(), 1, {"ra": 1 << 28, "dec": 1 << 27})
         self.network: Network = build(NetworkConfig(nodes=nodes, name="final"), plant, 1)
         self.last: dict[int, bytes] = {}
         self.network.wire.tap(lambda _t, frame, _sender: self.last.__setitem__(frame.identifier, frame.data))
@@ -218,7 +218,7 @@ def test_B9_declared_boards_send_rs232_packets() -> None:
 )
 def test_what_a_network_cannot_have_is_one_line(config: NetworkConfig, text: str) -> None:
     with pytest.raises(ValueError, match=text):
-        build(config, Plant(load("low_preload"), 1), 1)
+        build(config, Plant(load(), 1), 1)
 
 
 def test_a_scenario_names_its_network(tmp_path: Path) -> None:
@@ -249,7 +249,7 @@ def test_L3_the_host_runs_the_five_boards_by_their_serial_lines(tmp_path: Path) 
     file = tmp_path / "x.yaml"
     file.write_text(
         "name: x\nstart_utc: 2026-02-10T14:00:00Z\nnetwork: {name: serial}\n"
-        "plant: {file: low-preload, mount: false}\nsteps:\n"
+        "plant: {file: low-preload-bridge, mount: false}\nsteps:\n"
         "  - power_on: {}\n  - name: go\n    goto: {target: {ra: '04:31:00.0', dec: '+29:40:00'}}\n"
         "  - name: follow\n    track: {for: 8 s}\n"
         "expect: [{pointing_error: {during: follow, settle: 3 s, source: truth, at_most: 10 arcsec}},"

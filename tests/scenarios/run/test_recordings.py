@@ -21,7 +21,7 @@ from scenarios.run import run as runner
 from scenarios.run.mcapfile import Entry, Source, _of_summary, export
 
 SCENARIO = """name: recorded
-plant: low-preload
+plant: low-preload-bridge
 start_utc: 2026-02-10T14:00:00Z
 steps:
   - power_on: {}

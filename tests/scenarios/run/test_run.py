@@ -124,7 +124,7 @@ def test_a_target_that_sets_during_the_track_is_refused(tmp_path: Path) -> None:
 def eccentric(amplitude: str) -> str:
     """A plant with one effect, of an amplitude."""
     effect = f"{{name: gear_eccentricity, stage: axis, parameters: {{amplitude: {amplitude}}}}}"
-    return f"{{file: low-preload, effects: [{effect}]}}"
+    return f"{{file: low-preload-bridge, effects: [{effect}]}}"
 
 
 def test_an_effect_is_bounded_in_the_unit_it_is_given_in() -> None:
@@ -208,7 +208,7 @@ def test_expectations_fail_with_their_value(tmp_path: Path) -> None:
 
 def test_log_effects_reach_the_axis_log(tmp_path: Path) -> None:
     effect = "{name: sample_loss, axis: ra, parameters: {packet_loss: 0.5}}"
-    plant = f"plant: {{file: low-preload, effects: [{effect}]}}\n"
+    plant = f"plant: {{file: low-preload-bridge, effects: [{effect}]}}\n"
     go(plant + SHORT.replace("for: 1 s", "for: 9 s"), tmp_path)
     texts = [(tmp_path / f"axis-{axis}.csv").read_text().splitlines() for axis in ("ra", "dec")]
     ra, dec = (sum(line[0] not in "#t" for line in lines) for lines in texts)

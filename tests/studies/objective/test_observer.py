@@ -5,6 +5,7 @@ import pytest
 
 from boards.axis.observer import Observer
 from bus.protocol import AxisParameter
+from plant.compensation import drive_of
 from plant.model import get, load, with_value
 from plant.observer import SIZE, designed, lumped, sections
 from plant.parts import PlantModel
@@ -23,6 +24,18 @@ NUMBERS = (
 def observer(model: PlantModel) -> list[tuple[int, int]]:
     """The firmware with an observer that was made for a drive."""
     return list(parameters_of("observer", model).items())
+
+
+def test_high_preload_as_printed_is_beyond_the_motors() -> None:
+    """docs/results/one-arcsecond.md, N m. By hand: 217 + 1273 exp(-(15.041/144.4)^2) + 11 300 * 7.29e-5 of
+    friction; 0.9 * 0.39 N m/A * 360.489 * 24 V / 2.385 ohm of the full effort."""
+    printed = load("high_preload")
+    drive = drive_of(printed, printed.axes.ra)
+    full = drive.per_step * printed.controller.pwm_steps.si
+    assert (round(drive.friction), round(full)) == (1477, 1273)
+    for model in (LEAPS, SHIPPED):
+        drive = drive_of(model, model.axes.ra)
+        assert drive.friction < 0.2 * drive.per_step * model.controller.pwm_steps.si
 
 
 def test_the_loop_is_stable_where_the_axis_alone_is_not() -> None:

@@ -57,13 +57,13 @@ def test_a_forged_position_is_believed_until_it_ends() -> None:
 
 
 def test_one_forged_open_loop_turns_the_axis_as_far_as_fidelity_says() -> None:
-    lab = schmidt.Lab("lab", plant="low_preload", seed=1).run("0.5 s")
+    lab = schmidt.Lab("lab", seed=1).run("0.5 s")
     lab.ask("AXIS_RA", "POWER", 1)
     frame = pack_command(Device.AXIS_RA, Opcode.OPEN_LOOP, 1500)
     identifier = COMMAND_BASE + Device.AXIS_RA
     lab.faults.start("forged_sender", identifier=identifier, data=int.from_bytes(frame, "big"), period="9 s")
     angle = lab.run("8 s").truth("ra")["angle"]
-    assert np.degrees(angle[-1] - angle[0]) == pytest.approx(12, abs=1)
+    assert np.degrees(angle[-1] - angle[0]) == pytest.approx(13, abs=0.5)
 
 
 def test_a_babbler_takes_the_share_it_is_given() -> None:
