@@ -35,8 +35,8 @@ ENABLED: tuple[tuple[int, ...], ...] = (
 """Channels that PWMEN makes PWM outputs; the others are ordinary pins."""
 FREE_RUNNING = 0
 """PTMOD; single shot and up/down counting are not built."""
-PTMIF = 1
-"""PIR3 bit of the time base's interrupt. K."""
+PTIF = 0x10
+"""PIR3: the time base's interrupt."""
 
 
 class Edge(NamedTuple):
@@ -49,7 +49,7 @@ class Edge(NamedTuple):
 
 class Pwm4431(Registers):
     """Edge aligned, pairs complementary or independent. PTPER and PDCx are double buffered: what is written
-    counts from the next period on, unless UDIS holds it back. pir3: PTMIF, for firmware to clear.
+    counts from the next period on, unless UDIS holds it back. pir3: PTIF, for firmware to clear.
 
     special_event: called with the Q clock when PTMR meets SEVTCMP, every SEVOPS + 1 times.
     """
@@ -139,7 +139,7 @@ class Pwm4431(Registers):
         self._matches += 1
         if self._matches > self.field("PTOPS"):
             self._matches = 0
-            self.pir3 |= PTMIF
+            self.pir3 |= PTIF
         self._start += self._period
         if not self.field("UDIS"):
             self._load()

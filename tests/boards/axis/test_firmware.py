@@ -204,7 +204,7 @@ def test_B9_a_board_that_runs_late_steers_and_tells_by_its_own_clock() -> None:
 def test_an_encoder_set_anew_while_its_board_was_off_is_no_fault() -> None:
     """The look before the gap says nothing of the one behind it."""
     lab = Lab()
-    lab.run(0.1)
+    lab.run(0.6)
     lab.command(Opcode.POWER, 1)
     lab.position.power_off(lab.queue.now_ns)
     lab.run(0.5)

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from boards.chips.pic18f4431 import Pwm4431
 
-PTMIF = 1
+PTIF = 0x10
 ENABLED = ((), (1,), (0, 1), (0, 1, 2, 3), (0, 1, 2, 3, 4, 5), (0, 1, 2, 3, 4, 5, 6, 7), (1, 3), (1, 3, 5, 7))
 """PWMEN of DS39616D, register 18-3: PWM1; PWM0 and 1; 0 to 3; 0 to 5; all; 1 and 3; all odd."""
 MASKS = {
@@ -145,7 +145,7 @@ def test_special_event_and_time_base_interrupt_by_their_postscalers() -> None:
         flags.append(pwm.pir3)
         pwm.pir3 = 0
     assert heard == [400 + 100, 1200 + 100, 2000 + 100]  # every second period, 25 cycles of four clocks in
-    assert flags == [0, 0, PTMIF, 0, 0, PTMIF]
+    assert flags == [0, 0, PTIF, 0, 0, PTIF]
 
 
 def test_what_is_not_built_and_what_does_not_fit_is_said() -> None:
