@@ -64,6 +64,16 @@ def test_a_mutant_knows_the_lines_of_its_statement_and_whether_a_function_runs_i
     }  # fmt: skip
 
 
+def test_without_a_test_that_is_quick_enough_nothing_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Else pytest, without a file, would collect all there are."""
+    pytest.importorskip("coverage")
+    from tests.mutation.__main__ import main
+
+    monkeypatch.setattr("sys.argv", ["mutation", "bus", "--tests", "nowhere"])
+    with pytest.raises(SystemExit, match="nowhere: no test"):
+        main()
+
+
 def test_a_share_below_its_floor_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tests.mutation.ratchet.floors", lambda: {"a.py": 90.0})
     assert fallen({"a.py": 90.0, "b.py": 0.0}) == []

@@ -883,7 +883,7 @@ static void telemetry(struct board *b, int64_t setpoint_q16) { /* every 10 ms */
     uint16_t current[2];
     int16_t effort;
     int64_t velocity;
-    if (hit || (pointing(b) && time_ns() - b->good_ns > STALE_NS)) stop(b);
+    if (hit || (pointing(b) && !fresh(b))) stop(b);
     status = (uint8_t)((b->mode ? b->mode | POWERED : 0) | (b->velocity ? MOVING : 0)
                        | (b->reached ? SOFT_LIMIT : 0) | (b->fault ? FAULTY : 0));
     effort = (int16_t)quotient((int64_t)b->effort * EFFORT_SCALE, b->settings[PWM_STEPS]);
@@ -931,7 +931,6 @@ void board_timer(struct board *b) {
         effort = steps_of(b->effort_q16);
     }
     if (b->p[SPREAD] || b->p[COMPENSATION] || b->p[BIAS]) {
-        if (b->fixed) counter_follow(b, effort);
         effort = drive_fine(b, wanted);
     } else {
         counter_follow(b, effort);
@@ -970,7 +969,6 @@ void board_reset(struct board *b) {
     }
     b->auxiliary_latch_ns = -2 * MISSING_NS;
     b->auxiliary_rate_q8 = 0;
-    pi_start(b, 0, 0, 0);
     b->counter = 0;
     observer_start(b);
     b->share_q16 = 0;

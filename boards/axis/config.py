@@ -106,27 +106,27 @@ class AxisConfig:
     frame_ns: time a full frame takes on the bus, for the age of received measurements.
     """
 
-    kp: float = 3.4
-    ki: float = 0.037
-    counter_split: int = 10
+    kp: float
+    ki: float
+    counter_split: int
     split_fade_counts: int = 0
-    pwm_steps: int = 3000
-    pwm_hz: int = 20_000
+    pwm_steps: int
+    pwm_hz: int
     position_gain: float = 6.0
-    kp_pointing: float = 1.0
-    ki_pointing: float = 0.08
-    ki_creep: float = 0.15
-    kp_gust: float = 1.5
-    ki_gust: float = 0.075
+    kp_pointing: float
+    ki_pointing: float
+    ki_creep: float
+    kp_gust: float
+    ki_gust: float
     creep_rate: int = rate_q16(200.0)
     correction: int = rate_q16(1500.0)
     lag_steps: int = steps(900.0)
     acceleration: int = rate_q16(7200.0) // TICKS_PER_S
     classes: tuple[int, ...] = field(default_factory=_classes)
-    low: int = 0
-    high: int = STEPS_PER_TURN - 1
+    low: int
+    high: int
     settle_steps: int = steps(5.0)
-    frame_ns: int = 120_000
+    frame_ns: int
 
 
 def settings(config: AxisConfig, peers: AxisPeers) -> tuple[int, ...]:

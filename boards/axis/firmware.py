@@ -5,7 +5,7 @@ from typing import Final
 from boards.axis.commands import axis_commands, axis_parameters
 from boards.axis.config import FCY_HZ, TABLE, TICK_NS, AxisConfig, AxisPeers, AxisPins
 from boards.axis.limits import SoftLimits
-from boards.axis.motion import POINTING, STALE_NS, Motion
+from boards.axis.motion import POINTING, Motion
 from boards.axis.observer import Observer
 from boards.axis.output import FineOutput, fine_parameters, observer_parameters
 from boards.axis.pi import CounterTorque, IncrementalPi
@@ -61,13 +61,15 @@ class AxisBoard(PeriodicBoard):
         self.watch = EncoderWatch()
         self._identifier = MEASUREMENT_BASE + self.device_type
         self.auxiliary = RemoteAuxiliary(config.frame_ns)
-        remote = [MEASUREMENT_BASE + each for each in (peers.position, peers.motor_a, peers.motor_b)]
-        calls = [self.motion.take_position, self.tach_a.take, self.tach_b.take]
+        remote = {
+            MEASUREMENT_BASE + peers.position: self.motion.take_position,
+            MEASUREMENT_BASE + peers.motor_a: self.tach_a.take,
+            MEASUREMENT_BASE + peers.motor_b: self.tach_b.take,
+        }
         if peers.auxiliary is not None:  # the last of the four filters that go with the second mask
-            remote.append(MEASUREMENT_BASE + peers.auxiliary)
-            calls.append(self.auxiliary.take)
-        self.mail.update(zip(remote, calls, strict=True))
-        self.can.accept((FULL_MASK, [COMMAND_BASE + self.device_type]), (FULL_MASK, remote))
+            remote[MEASUREMENT_BASE + peers.auxiliary] = self.auxiliary.take
+        self.mail.update(remote)
+        self.can.accept((FULL_MASK, [COMMAND_BASE + self.device_type]), (FULL_MASK, list(remote)))
         self.commands = self.common_commands() | axis_commands(self)
         self.fine: FineOutput | None = None
         """Set while parameter 12 or 13 is: duties finer than a PWM step, compensation."""
@@ -90,7 +92,6 @@ class AxisBoard(PeriodicBoard):
         self.tach_a.forget()
         self.tach_b.forget()
         self.auxiliary.forget()
-        self.pi.start(0, 0, 0)
         self.counter.start()
         self.observer.start()
         self.effort = 0
@@ -127,8 +128,6 @@ class AxisBoard(PeriodicBoard):
         if observer.on:
             effort = observer.step(self.pi, velocity)
         if self.fine is not None:
-            if self.effort_command is not None:
-                counter.follow(effort, velocity)
             effort = self.fine.drive(end, end - self.epoch_ns, velocity, setpoint, self.effort_command)
         else:
             counter.follow(effort, velocity)
@@ -162,7 +161,7 @@ class AxisBoard(PeriodicBoard):
         velocity = self.velocity
         limits = self.limits
         now = t_ns - self.epoch_ns
-        if limits.hit(velocity) or (motion.mode in POINTING and now - motion.good_ns > STALE_NS):
+        if limits.hit(velocity) or (motion.mode in POINTING and not motion.fresh(now)):
             self.stop()
         mode = motion.mode
         status = mode | _POWERED if mode else 0

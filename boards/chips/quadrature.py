@@ -21,31 +21,22 @@ class Filter:
 
     def sample(self, level: int) -> int:
         """One sample in, the filtered level out."""
-        if level != self._candidate:
-            self._candidate, self._seen = level, 1
-        elif self._seen < FILTER_SAMPLES:
-            self._seen += 1
+        self._seen = self._seen + 1 if level == self._candidate else 1
+        self._candidate = level
         if self._seen >= FILTER_SAMPLES:
             self.level = level
         return self.level
 
 
 class Decoder:
-    """Counts edges: all of them (x4), or those of channel A (x2). lost: both channels changed at once."""
+    """Counts edges: all of them (x4), or those of channel A (x2)."""
 
-    def __init__(self, a: int = 0, b: int = 0) -> None:
-        self._a, self._b = a, b
-        self.lost = 0
+    def __init__(self) -> None:
+        self._place = 0
 
-    def edge(self, a: int, b: int, *, x2: bool) -> int:
-        """New levels: +1, -1, or 0 for no count."""
-        before, now = _GRAY.index((self._a, self._b)), _GRAY.index((a, b))
-        turned_a = a != self._a
-        self._a, self._b = a, b
-        step = (now - before) & 3
-        if step == 2:
-            self.lost += 1
+    def edge(self, a: int, b: int, *, x2: bool) -> int | None:
+        """New levels: +1, -1, or 0 for no count; None: both channels changed at once, a count is lost."""
+        before, self._place = self._place, _GRAY.index((a, b))
+        if x2 and _GRAY[before][0] == a:
             return 0
-        if not step or (x2 and not turned_a):
-            return 0
-        return 1 if step == 1 else -1
+        return (0, 1, None, -1)[self._place - before & 3]

@@ -1,6 +1,7 @@
 """A small bench: the RA boards on a wire, a rigid axis behind them, a PC on the bus."""
 
 from dataclasses import dataclass, field
+from typing import Any
 
 from boards.axis.config import AxisConfig, AxisPeers, AxisPins
 from boards.axis.firmware import AxisBoard
@@ -18,9 +19,17 @@ STEP_ARCSEC = ARCSEC_PER_TURN / (1 << 29)
 RA = Device.AXIS_RA
 
 
+def axis_config(**changes: Any) -> AxisConfig:
+    """Of an axis whose drive is `RigidAxis`."""
+    gains = {"kp": 3.4, "ki": 0.037, "kp_pointing": 1.0, "ki_pointing": 0.08, "ki_creep": 0.15}
+    drive = {"counter_split": 10, "pwm_steps": 3000, "pwm_hz": 20_000, "kp_gust": 1.5, "ki_gust": 0.075}
+    bounds = {"low": 0, "high": (1 << 29) - 1, "frame_ns": 120_000}
+    return AxisConfig(**{**gains, **drive, **bounds, **changes})
+
+
 @dataclass
 class Lab:
-    config: AxisConfig = field(default_factory=AxisConfig)
+    config: AxisConfig = field(default_factory=axis_config)
 
     def __post_init__(self) -> None:
         self.queue = EventQueue()

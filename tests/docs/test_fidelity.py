@@ -6,7 +6,6 @@ from pathlib import Path
 import pytest
 
 from boards.axis import config as axis
-from boards.axis.config import AxisConfig
 from boards.core.board import BOOT_NS
 from boards.core.interrupts import InterruptController, Line, Source
 from boards.display import firmware as display
@@ -33,6 +32,7 @@ from scenarios.lab.faults.table import KINDS
 from scenarios.lab.network import CRYSTAL_DRIFT_PPM_PER_HOUR, CRYSTAL_PPM
 from scenarios.language import model as scenario_model
 from scenarios.studies.paper.scales import INERTIA
+from tests.boards.lab import axis_config
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "FIDELITY.md").read_text(encoding="utf-8")
@@ -111,7 +111,7 @@ def test_figures_are_those_of_the_code(start: str) -> None:
 
 def test_rates_of_the_speed_classes_are_those_of_the_code() -> None:
     scale = 1_296_000 / 112_896_000 * 200 / 65536
-    slew, set_, guide, fine, track = (round(rate * scale, 3) for rate in AxisConfig().classes)
+    slew, set_, guide, fine, track = (round(rate * scale, 3) for rate in axis_config().classes)
     text = row("| B2 | axis: speeds |")
     assert f"slew {slew:g}, track {track:g}″/s" in text
     assert f"set {set_:g}, guide {guide:g}, fine {fine:g}″/s" in text

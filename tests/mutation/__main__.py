@@ -129,6 +129,8 @@ def main() -> None:
         os.environ["NUMBA_DISABLE_JIT"] = "1"
     files = [each for each in judging(asked.room) if re.search(asked.tests, each)]
     covering = Covering(asked.room, files, asked.seconds)
+    if not covering.tests:
+        raise SystemExit(f"{asked.tests or asked.room}: no test that is quick enough")
     loop = Loop(asked, covering)
     run(sorted({name.partition("::")[0] for name in covering.tests}), [loop])
     if loop.broken or not loop.shares:

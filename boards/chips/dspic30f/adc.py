@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from boards.chips.dspic30f.registers import CHANNELS, CONVERSION_TAD, Registers, Ssrc
+from boards.chips.dspic30f.registers import CHANNELS, CONVERSION_TAD, Ssrc, registers
 from boards.silicon.adc import convert
 
 BUFFERS = 16
@@ -17,7 +17,7 @@ class Adc:
 
     def __init__(self, pin: Callable[[int, int], float], tcy_ns: float) -> None:
         self.pin = pin
-        self.registers = Registers(ADCON1=0, ADCON2=0, ADCON3=0)
+        self.registers = registers(ADCON1=0, ADCON2=0, ADCON3=0)
         self.buffers = [0] * BUFFERS
         self.interrupt = False
         self._tcy_ns = tcy_ns
@@ -41,15 +41,13 @@ class Adc:
             return False
         if not (registers.field("ASAM") or registers.field("SAMP")):
             return False
-        registers.put("SAMP", 0)
         channels = CHANNELS[registers.field("CHPS")]
         for channel in range(channels):
             self.buffers[self._fill] = convert(self.pin(t_ns, channel))
             self._fill = (self._fill + 1) % BUFFERS
         self._ready_ns = t_ns + channels * CONVERSION_TAD * self.tad_ns
         registers.put("DONE", 1)
-        if registers.field("ASAM"):
-            registers.put("SAMP", 1)
+        registers.put("SAMP", registers.field("ASAM"))
         self._samples += 1
         if self._samples > registers.field("SMPI"):
             self._samples = self._fill = 0

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import NamedTuple
 
-from boards.chips.dspic30f.registers import DTAPS, PTCKPS, PTPER_MASK, Registers
+from boards.chips.dspic30f.registers import DTAPS, PTCKPS, PTPER_MASK, registers
 
 PAIRS = 3
 FREE_RUNNING = 0
@@ -27,14 +27,13 @@ class MotorControlPwm:
     """
 
     def __init__(self) -> None:
-        self.registers = Registers(
+        self.registers = registers(
             PTCON=0, PTPER=0x7FFF, SEVTCMP=0, PDC1=0, PDC2=0, PDC3=0, DTCON1=0, PWMCON2=0
         )
         self.special_event: Callable[[int], None] | None = None
         self._start = 0
         self._events = 0
-        self._period = 0
-        self._loaded: tuple[int, ...] = (0,) * PAIRS
+        self._load()
 
     def start(self, half_cycles: int) -> None:
         """PTEN goes to 1: the buffers are loaded."""

@@ -1,6 +1,6 @@
 """Quadrature encoder interface (DS70141F p. 93, DS70135G p. 92)."""
 
-from boards.chips.dspic30f.registers import Qeim, Registers
+from boards.chips.dspic30f.registers import Qeim, registers
 from boards.chips.quadrature import Decoder, Filter
 
 _X2 = (Qeim.X2_INDEX, Qeim.X2_MATCH)
@@ -11,7 +11,7 @@ class QeiModule:
     """registers: QEICON, DFLTCON, POSCNT, MAXCNT. interrupt: QEIIF, for firmware to clear."""
 
     def __init__(self) -> None:
-        self.registers = Registers(QEICON=0, DFLTCON=0, POSCNT=0, MAXCNT=0xFFFF)
+        self.registers = registers(QEICON=0, DFLTCON=0, POSCNT=0, MAXCNT=0xFFFF)
         self.interrupt = False
         self._decoder = Decoder()
         self._filters = (Filter(), Filter(), Filter())
@@ -22,9 +22,8 @@ class QeiModule:
         registers = self.registers
         mode = registers.field("QEIM")
         if registers.field("QEOUT"):
-            a, b, index = (
-                each.sample(level) for each, level in zip(self._filters, (a, b, index), strict=True)
-            )
+            of_a, of_b, of_index = self._filters
+            a, b, index = of_a.sample(a), of_b.sample(b), of_index.sample(index)
         if registers.field("SWPAB"):
             a, b = b, a
         if mode not in tuple(Qeim) or mode == Qeim.OFF:

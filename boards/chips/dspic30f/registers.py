@@ -3,17 +3,19 @@ where that has nothing."""
 
 from enum import IntEnum
 
+from boards.chips.registers import Registers
+
 FIELDS: dict[str, tuple[str, int, int]] = {
     "CNTERR": ("QEICON", 15, 1), "INDX": ("QEICON", 12, 1), "UPDN": ("QEICON", 11, 1),
     "QEIM": ("QEICON", 8, 3), "SWPAB": ("QEICON", 7, 1),
     "QEOUT": ("DFLTCON", 7, 1),
-    "PTEN": ("PTCON", 15, 1), "PTOPS": ("PTCON", 4, 4), "PTCKPS": ("PTCON", 2, 2), "PTMOD": ("PTCON", 0, 2),
+    "PTEN": ("PTCON", 15, 1), "PTCKPS": ("PTCON", 2, 2), "PTMOD": ("PTCON", 0, 2),
     "SEVOPS": ("PWMCON2", 8, 4),
     "DTAPS": ("DTCON1", 6, 2), "DTA": ("DTCON1", 0, 6),
-    "ADON": ("ADCON1", 15, 1), "SSRC": ("ADCON1", 5, 3), "SIMSAM": ("ADCON1", 3, 1), "ASAM": ("ADCON1", 2, 1),
+    "ADON": ("ADCON1", 15, 1), "SSRC": ("ADCON1", 5, 3), "ASAM": ("ADCON1", 2, 1),
     "SAMP": ("ADCON1", 1, 1), "DONE": ("ADCON1", 0, 1),
     "CHPS": ("ADCON2", 8, 2), "SMPI": ("ADCON2", 2, 4),
-    "SAMC": ("ADCON3", 8, 5), "ADCS": ("ADCON3", 0, 6),
+    "ADCS": ("ADCON3", 0, 6),
 }  # fmt: skip
 
 PTPER_MASK = 0x7FFF
@@ -46,29 +48,6 @@ class Ssrc(IntEnum):
     AUTO = 0b111
 
 
-class Registers:
-    """A peripheral's 16-bit registers by name, with their fields."""
-
-    def __init__(self, **values: int) -> None:
-        self._values = dict(values)
-
-    def __getitem__(self, name: str) -> int:
-        return self._values[name]
-
-    def __setitem__(self, name: str, value: int) -> None:
-        if name not in self._values:
-            raise KeyError(name)
-        self._values[name] = value & 0xFFFF
-
-    def field(self, name: str) -> int:
-        """Value of a field."""
-        register, shift, bits = FIELDS[name]
-        return self._values[register] >> shift & (1 << bits) - 1
-
-    def put(self, name: str, value: int) -> None:
-        """Change a field; raises ValueError when it does not fit."""
-        register, shift, bits = FIELDS[name]
-        mask = (1 << bits) - 1
-        if not 0 <= value <= mask:
-            raise ValueError(f"{name} has {bits} bits, {value} does not fit")
-        self._values[register] = self._values[register] & ~(mask << shift) | value << shift
+def registers(**values: int) -> Registers:
+    """Registers of 16 bits and their values after a reset."""
+    return Registers(FIELDS, dict.fromkeys(values, 16), values)

@@ -8,12 +8,13 @@ Registers are tables (DS39616D section 18; field positions K): field -> (registe
 from collections.abc import Callable
 from typing import NamedTuple
 
+from boards.chips.registers import Registers
+
 FIELDS: dict[str, tuple[str, int, int]] = {
     "PTOPS": ("PTCON0", 4, 4), "PTCKPS": ("PTCON0", 2, 2), "PTMOD": ("PTCON0", 0, 2),
-    "PTEN": ("PTCON1", 7, 1), "PTDIR": ("PTCON1", 6, 1),
+    "PTEN": ("PTCON1", 7, 1),
     "PWMEN": ("PWMCON0", 4, 3), "PMOD": ("PWMCON0", 0, 4),
-    "SEVOPS": ("PWMCON1", 4, 4), "SEVTDIR": ("PWMCON1", 3, 1), "UDIS": ("PWMCON1", 1, 1),
-    "OSYNC": ("PWMCON1", 0, 1),
+    "SEVOPS": ("PWMCON1", 4, 4), "UDIS": ("PWMCON1", 1, 1),
     "DTPS": ("DTCON", 6, 2), "DT": ("DTCON", 0, 6),
 }  # fmt: skip
 WIDTHS: dict[str, int] = {
@@ -29,13 +30,13 @@ DTPS = (2, 4, 8, 16)
 """Dead time clock: Fosc over this."""
 PAIRS, CHANNELS = 4, 8
 ENABLED: tuple[tuple[int, ...], ...] = (
-    (), (1,), (1, 3), (0, 1, 2, 3), (0, 1, 2, 3, 4, 5), (0, 1, 2, 3, 4, 5, 6, 7), (1, 3, 5), (1, 3, 5, 7),
+    (), (1,), (0, 1), (0, 1, 2, 3), (0, 1, 2, 3, 4, 5), (0, 1, 2, 3, 4, 5, 6, 7), (1, 3), (1, 3, 5, 7),
 )  # fmt: skip
 """Channels that PWMEN makes PWM outputs; the others are ordinary pins."""
 FREE_RUNNING = 0
 """PTMOD; single shot and up/down counting are not built."""
-PTMIF = 1
-"""PIR3 bit of the time base's interrupt. K."""
+PTIF = 0x10
+"""PIR3: the time base's interrupt."""
 
 
 class Edge(NamedTuple):
@@ -46,42 +47,26 @@ class Edge(NamedTuple):
     on: bool
 
 
-class Pwm4431:
+class Pwm4431(Registers):
     """Edge aligned, pairs complementary or independent. PTPER and PDCx are double buffered: what is written
-    counts from the next period on, unless UDIS holds it back. pir3: PTMIF, for firmware to clear.
+    counts from the next period on, unless UDIS holds it back. pir3: PTIF, for firmware to clear.
 
     special_event: called with the Q clock when PTMR meets SEVTCMP, every SEVOPS + 1 times.
     """
 
     def __init__(self) -> None:
-        self._registers = dict(AT_RESET)
+        super().__init__(FIELDS, WIDTHS, AT_RESET)
         self.pir3 = 0
         self.special_event: Callable[[int], None] | None = None
         self.outputs = [False] * CHANNELS
-        self._start = self._period = self._events = self._matches = 0
-        self._loaded = (0,) * PAIRS
-
-    def __getitem__(self, register: str) -> int:
-        return self._registers[register]
+        self._start = self._events = self._matches = 0
+        self._load()
 
     def __setitem__(self, register: str, value: int) -> None:
-        """Write a register; bits it does not have read as 0. Raises KeyError for one there is not."""
-        self._registers[register] = value & ((1 << WIDTHS[register]) - 1)
+        """Write a register as above."""
+        super().__setitem__(register, value)
         if not self.field("PTEN"):
             self._load()  # a stopped time base takes the buffers at once
-
-    def field(self, name: str) -> int:
-        """Value of a field."""
-        register, shift, bits = FIELDS[name]
-        return self._registers[register] >> shift & (1 << bits) - 1
-
-    def put(self, name: str, value: int) -> None:
-        """Change a field; raises ValueError when it does not fit."""
-        register, shift, bits = FIELDS[name]
-        mask = (1 << bits) - 1
-        if not 0 <= value <= mask:
-            raise ValueError(f"{name} has {bits} bits, {value} does not fit")
-        self[register] = self._registers[register] & ~(mask << shift) | value << shift
 
     def _load(self) -> None:
         scale = PTCKPS[self.field("PTCKPS")]
@@ -154,7 +139,7 @@ class Pwm4431:
         self._matches += 1
         if self._matches > self.field("PTOPS"):
             self._matches = 0
-            self.pir3 |= PTMIF
+            self.pir3 |= PTIF
         self._start += self._period
         if not self.field("UDIS"):
             self._load()

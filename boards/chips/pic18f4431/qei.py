@@ -46,9 +46,8 @@ class Qei4431:
         mode = self.mode
         if mode not in tuple(Mode) or mode == Mode.OFF:
             return
-        lost = self._decoder.lost
         step = self._decoder.edge(a, b, x2=mode in X2)
-        if self._decoder.lost != lost:
+        if step is None:
             self.qeicon |= QERR
         if step:
             self._turn(step)

@@ -2,7 +2,6 @@ from itertools import pairwise
 
 import pytest
 
-from boards.axis.config import AxisConfig
 from bus.protocol import (
     AxisMode,
     Device,
@@ -16,7 +15,7 @@ from bus.protocol import (
 )
 from bus.protocol.scales import rate_q16
 from bus.protocol.serial import NO_SETPOINT, AxisSample, PacketDecoder
-from tests.boards.lab import CENTRE, RA, STEP_ARCSEC, Lab
+from tests.boards.lab import CENTRE, RA, STEP_ARCSEC, Lab, axis_config
 
 
 def steps(arcsec: float) -> int:
@@ -65,7 +64,7 @@ def test_B1_lead_motor_gets_all_and_lag_motor_its_share(lab: Lab) -> None:
 
 
 def test_B1_the_share_may_fade_with_speed() -> None:
-    lab = Lab(AxisConfig(counter_split=20, split_fade_counts=1000))
+    lab = Lab(axis_config(counter_split=20, split_fade_counts=1000))
     lab.run(0.1)
     lab.command(Opcode.POWER, 1)
     lab.command(Opcode.OPEN_LOOP, 800)
@@ -124,7 +123,7 @@ def test_B2_nudge_shifts_the_target(lab: Lab) -> None:
 
 
 def test_B3_targets_beyond_the_soft_limits_are_refused_and_the_limit_holds() -> None:
-    lab = Lab(AxisConfig(low=CENTRE - steps(3600.0), high=CENTRE + steps(7200.0)))
+    lab = Lab(axis_config(low=CENTRE - steps(3600.0), high=CENTRE + steps(7200.0)))
     lab.run(0.1)
     lab.command(Opcode.POWER, 1)
     assert lab.command(Opcode.MOVE_TO, CENTRE + steps(7300.0), 1).result == Result.OUT_OF_RANGE

@@ -2,7 +2,6 @@
 
 import pytest
 
-from boards.axis.config import AxisConfig
 from boards.axis.motion import Motion
 from boards.axis.pi import IncrementalPi
 from boards.axis.profile import UNITS_PER_STEP
@@ -10,6 +9,7 @@ from boards.axis.tachometer import RemoteTachometer
 from bus.protocol import pack_position
 from bus.protocol.motion import pack_tach
 from bus.protocol.scales import rate_q16
+from tests.boards.lab import axis_config
 
 FRAME_NS, TICK_NS = 120_000, 5_000_000
 COUNT = 1 << 18  # units of a count
@@ -18,7 +18,7 @@ ROUNDED = 0.5 / 54_975  # counts per tick and ns, Q38, is a whole number near 2^
 
 def told(age: int, now_ns: int = 0, position: int = 5_000_000) -> Motion:
     """A board that takes a frame of this age, in units of 4 µs, at `now_ns`."""
-    found = Motion(AxisConfig(frame_ns=FRAME_NS), IncrementalPi(0, 0, 3000))
+    found = Motion(axis_config(frame_ns=FRAME_NS), IncrementalPi(0, 0, 3000))
     found.take_position(now_ns, pack_position(0x21, 0, position, age, 1))
     return found
 

@@ -2,10 +2,10 @@
 
 import pytest
 
-from boards.axis.config import FCY_HZ, TABLE, AxisConfig
+from boards.axis.config import FCY_HZ, TABLE
 from bus.protocol import AxisMode, AxisParameter, Opcode, Result, pack_command, unpack_target
 from bus.protocol.scales import rate_q16
-from tests.boards.lab import CENTRE, RA, Lab
+from tests.boards.lab import CENTRE, RA, Lab, axis_config
 from tests.boards.tables import times_ns
 
 TURN = 1 << 29
@@ -83,7 +83,7 @@ def test_B9_without_a_position_nothing_is_pointed() -> None:
 
 @pytest.mark.parametrize("number", [0, 1, 5, 6])
 def test_B3_a_target_may_be_a_limit_itself(number: int) -> None:
-    lab = Lab(AxisConfig(low=CENTRE - 500, high=CENTRE + 500))
+    lab = Lab(axis_config(low=CENTRE - 500, high=CENTRE + 500))
     lab.run(0.1)
     lab.command(Opcode.POWER, 1)
     for offset, inside in ((-501, False), (-500, True), (500, True), (501, False)):

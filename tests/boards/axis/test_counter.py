@@ -4,11 +4,10 @@ from itertools import pairwise
 
 import pytest
 
-from boards.axis.config import AxisConfig
 from boards.axis.pi import CounterTorque
 from bus.protocol import Opcode, Result
 from bus.protocol.scales import rate_q16
-from tests.boards.lab import Lab
+from tests.boards.lab import Lab, axis_config
 from tests.boards.rigid import RigidAxis
 
 
@@ -47,7 +46,7 @@ def test_B2_the_effort_goes_on_evenly_when_the_register_moves(
 ) -> None:
     """Below the drop of a diode the lagging motor conducts nothing: there a step more would be a bump."""
     monkeypatch.setattr("tests.boards.lab.RigidAxis", Blocked)
-    lab = Lab(AxisConfig(counter_split=10))
+    lab = Lab(axis_config(counter_split=10))
     lab.run(0.1)
     assert lab.command(Opcode.POWER, 1).result == Result.OK
     lab.command(Opcode.SET_RATE, sign * rate_q16(15.0))

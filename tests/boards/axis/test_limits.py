@@ -2,12 +2,13 @@
 
 import pytest
 
-from boards.axis.config import AxisConfig, steps
+from boards.axis.config import steps
 from boards.axis.limits import SoftLimits
 from boards.axis.motion import Motion
 from boards.axis.pi import IncrementalPi
 from bus.protocol import AxisMode, PositionFlag
 from bus.protocol.scales import rate_q16
+from tests.boards.lab import axis_config
 
 LOW, HIGH = steps(36_000.0), steps(360_000.0)
 SLEW_COUNTS = 3136  # 7200"/s at 87.1 counts/" (hardware.md 2.1) in 5 ms
@@ -19,7 +20,7 @@ def limits(
     mode: AxisMode, position: int, setpoint_q16: int = 0, ends: int = 0, slew_arcsec_s: float = 7200.0
 ) -> SoftLimits:
     """The limits of an axis in a mode, somewhere."""
-    config = AxisConfig(low=LOW, high=HIGH, classes=(rate_q16(slew_arcsec_s),) * 5)
+    config = axis_config(low=LOW, high=HIGH, classes=(rate_q16(slew_arcsec_s),) * 5)
     motion = Motion(config, IncrementalPi(0, 0, 3000))
     motion.mode, motion.position, motion.ends = mode, position, ends
     motion.setpoint_q16 = setpoint_q16

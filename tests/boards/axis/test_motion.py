@@ -2,16 +2,17 @@
 
 import pytest
 
-from boards.axis.config import AxisConfig, steps
+from boards.axis.config import steps
 from boards.axis.hold import RateLock
 from boards.axis.motion import Motion
 from boards.axis.pi import IncrementalPi
 from boards.axis.profile import UNITS_PER_STEP
 from bus.protocol import AxisMode, PositionFlag, pack_position
 from bus.protocol.scales import rate_q16
+from tests.boards.lab import axis_config
 
 PLACE = 200_000_000
-CONFIG = AxisConfig(
+CONFIG = axis_config(
     kp=1.0, ki=0.01, kp_pointing=2.0, ki_pointing=0.02, ki_creep=0.03, kp_gust=4.0, ki_gust=0.04,
 )  # fmt: skip
 PLAIN, STOPPING, CREEPING, WINDY, LOCKED = ((1.0, 0.01), (2.0, 0.02), (2.0, 0.03), (4.0, 0.04), (2.0, 0.03))

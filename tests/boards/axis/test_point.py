@@ -2,15 +2,16 @@
 
 import pytest
 
-from boards.axis.config import AxisConfig, steps
+from boards.axis.config import steps
 from boards.axis.motion import Motion
 from boards.axis.pi import IncrementalPi
 from boards.axis.profile import UNITS_PER_STEP
 from bus.protocol import pack_position
 from bus.protocol.scales import rate_q16
+from tests.boards.lab import axis_config
 
 PLACE = 200_000_000
-CONFIG = AxisConfig(ki_pointing=0.5, ki_creep=0.25)
+CONFIG = axis_config(ki_pointing=0.5, ki_creep=0.25)
 
 
 def at(position: int, axis: Motion | None = None) -> Motion:

@@ -8,7 +8,6 @@ from hypothesis import strategies as st
 
 from boards.axis.commands import RATE_LIMIT
 from boards.axis.compensator import Compensator
-from boards.axis.config import AxisConfig
 from boards.axis.hold import LOCK_LIMIT_Q16, Blend, RateLock
 from boards.axis.limits import SoftLimits
 from boards.axis.motion import Motion
@@ -22,7 +21,7 @@ from bus.protocol.position import pack_position
 from bus.protocol.scales import COUNTS_PER_TURN, STEPS_PER_TURN, rate_q16
 from bus.units import ARCSEC_PER_TURN
 from tests.boards.checked import Checked, checked
-from tests.boards.lab import Lab
+from tests.boards.lab import Lab, axis_config
 
 INT16 = (-(1 << 15), (1 << 15) - 1)
 ACCELERATION = (1, rate_q16(7200.0) // 20)
@@ -126,7 +125,7 @@ def test_B1_taking_over_from_anything_the_encoder_can_say(
 
 
 def motion(position: int) -> Motion:
-    made = Motion(AxisConfig(), IncrementalPi(GAIN, GAIN, 3000))
+    made = Motion(axis_config(), IncrementalPi(GAIN, GAIN, 3000))
     made.position = Checked(position)
     made.latch_ns = Checked(0)
     return made

@@ -1,5 +1,7 @@
 """QEI, PWM and ADC at register level, and that the boards' fast ones agree (hardware.md 3.4, 3.5)."""
 
+from collections.abc import Callable
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -8,7 +10,6 @@ from boards.chips.dspic30f import Adc, MotorControlPwm, QeiModule
 from boards.chips.dspic30f.pwm import Edge
 from boards.chips.dspic30f.registers import Qeim, Ssrc
 from boards.chips.pic18f4431 import Qei4431
-from boards.chips.pic18f4431.qei import IC2QEIF, IC3DRIF, QERR, Mode
 from boards.chips.quadrature import levels
 from boards.silicon.pwm import MotorPwm
 from boards.silicon.qei import Qei
@@ -33,7 +34,7 @@ walks = st.lists(st.integers(-300, 300), min_size=1, max_size=6)
 @given(walks)
 def test_the_fast_counter_is_the_register_in_free_running_mode(stops: list[int]) -> None:
     qei, other, at = dspic(Qeim.X4_MATCH), Qei4431(), 0
-    other.qeicon |= Mode.X4_MATCH << 2
+    other.qeicon |= 6 << 2
     for stop in stops:
         walk(qei, at, stop)
         walk(other, at, stop)
@@ -99,49 +100,118 @@ def test_the_filter_wants_three_equal_samples() -> None:
         assert qei.registers["POSCNT"] == count
 
 
+def test_each_input_has_its_filter() -> None:
+    qei = dspic(Qeim.X4_INDEX, maxcnt=99)
+    qei.registers["DFLTCON"] = 0x80
+    for count in (1, 2, 3):
+        for _ in range(3):
+            assert qei.registers["POSCNT"] == count - 1
+            qei.sample(*levels(count))
+    for _ in range(2):
+        qei.sample(0, 0, 1)
+        assert (qei.registers["POSCNT"], qei.registers.field("INDX")) == (3, 0)
+    qei.sample(0, 0, 1)
+    assert (qei.registers["POSCNT"], qei.registers.field("INDX"), qei.interrupt) == (0, 1, True)
+
+
+def test_an_index_counts_once_and_in_index_mode_only() -> None:
+    for mode, reset in ((Qeim.X4_INDEX, True), (Qeim.X2_INDEX, True), (Qeim.X4_MATCH, False)):
+        qei = dspic(mode, maxcnt=99)
+        walk(qei, 0, 4)
+        qei.sample(0, 0, 1)
+        assert (qei.registers["POSCNT"] == 0, qei.interrupt) == (reset, reset)
+        qei.interrupt = False
+        qei.sample(0, 0, 1)
+        assert not qei.interrupt
+
+
+def test_a_register_of_16_bits_wraps_without_a_match() -> None:
+    up, down = dspic(Qeim.X4_INDEX), dspic(Qeim.X4_INDEX)
+    up.registers["POSCNT"] = 0xFFFF
+    walk(up, 0, 1)
+    walk(down, 0, -1)
+    assert (up.registers["POSCNT"], down.registers["POSCNT"]) == (0, 0xFFFF)
+    assert up.registers.field("CNTERR") == down.registers.field("CNTERR") == 1
+
+
+@pytest.mark.parametrize(
+    ("code", "x4", "x2"),
+    [(0, 0, 0), (1, 0, 0), (2, 0, 0), (3, 0, 0), (4, 0, 1), (5, 0, 1), (6, 1, 0), (7, 1, 0)],
+)
+def test_modes_by_their_codes(code: int, x4: int, x2: int) -> None:
+    """FRM, register 16-1: by index and by match, on both edges of A and on all four."""
+    qei = QeiModule()
+    qei.registers["QEICON"] = code << 8
+    walk(qei, 0, 20)
+    assert qei.registers["POSCNT"] == 20 * x4 + 10 * x2
+    walk(qei, 20, 24)
+    qei.sample(*levels(24), 1)
+    assert qei.interrupt == (code in (4, 6))
+
+
 def test_swapped_channels_and_off() -> None:
     qei = dspic(Qeim.X4_MATCH)
     qei.registers.put("SWPAB", 1)
     walk(qei, 0, 5)
     assert qei.registers["POSCNT"] == 0x10000 - 5
-    off = dspic(Qeim.OFF)
-    walk(off, 0, 5)
-    assert off.registers["POSCNT"] == 0
     with pytest.raises(ValueError, match="QEIM has 3 bits"):
         qei.registers.put("QEIM", 8)
 
 
-def test_pic18f4431_matches_turns_loses_and_resets() -> None:
+X4_MATCH, X4_INDEX, QERR, UP = 6 << 2, 5 << 2, 0x40, 0x20
+"""Bits of QEICON in DS39616D."""
+MATCHED, TURNED = 0x04, 0x08
+"""Bits of PIR3 there."""
+
+
+@pytest.mark.parametrize(
+    ("code", "counted", "by_index"),
+    [(0, 0, 0), (1, 10, 1), (2, 10, 0), (3, 0, 0), (4, 0, 0), (5, 20, 1), (6, 20, 0)],
+)
+def test_pic18f4431_modes_by_their_codes(code: int, counted: int, by_index: int) -> None:
     qei = Qei4431()
-    qei.qeicon |= Mode.X4_MATCH << 2
+    assert (qei.qeicon, qei.poscnt, qei.maxcnt, qei.pir3) == (UP, 0, 0xFFFF, 0)
+    qei.qeicon |= code << 2
+    walk(qei, 0, 20)
+    assert (qei.poscnt, qei.mode) == (counted, code)
+    qei.sample(*levels(20), 1)
+    assert (qei.poscnt, qei.pir3) == (0 if by_index else counted, MATCHED * by_index)
+
+
+def test_pic18f4431_matches_turns_and_loses() -> None:
+    qei = Qei4431()
+    qei.qeicon |= X4_MATCH
     qei.maxcnt = 9
     walk(qei, 0, 9)
     assert (qei.poscnt, qei.pir3) == (9, 0)
     walk(qei, 9, 10)
-    assert (qei.poscnt, qei.pir3) == (0, IC2QEIF)
+    assert (qei.poscnt, qei.pir3) == (0, MATCHED)
     qei.pir3 = 0
     walk(qei, 10, 9)
-    assert (qei.poscnt, qei.pir3) == (9, IC2QEIF | IC3DRIF)
-    assert not qei.qeicon & QERR
+    assert (qei.poscnt, qei.pir3) == (9, MATCHED | TURNED)
+    assert qei.qeicon == X4_MATCH
     qei.sample(*levels(11))
-    assert qei.qeicon & QERR
-    index = Qei4431()
-    index.qeicon |= Mode.X4_INDEX << 2
-    index.maxcnt = 99
-    walk(index, 0, 7)
-    index.sample(*levels(7), 1)
-    assert index.poscnt == 0  # forward: rising edge
-    index.sample(*levels(7), 0)
-    walk(index, 7, 5)
-    index.sample(*levels(5), 1)
-    assert index.poscnt == 0x10000 - 2
-    index.sample(*levels(5), 0)
-    assert index.poscnt == 99  # reverse: falling edge
-    x2 = Qei4431()
-    x2.qeicon |= Mode.X2_MATCH << 2
-    walk(x2, 0, 40)
-    assert x2.poscnt == 20
-    walk(Qei4431(), 0, 5)
+    assert (qei.qeicon, qei.poscnt) == (X4_MATCH | QERR, 9)
+
+
+def test_pic18f4431_index_resets_forward_at_its_rise_and_reverse_at_its_fall() -> None:
+    qei = Qei4431()
+    qei.qeicon |= X4_INDEX
+    qei.maxcnt = 99
+    walk(qei, 0, 7)
+    qei.sample(*levels(7), 1)
+    assert (qei.poscnt, qei.pir3) == (0, MATCHED)
+    qei.pir3 = 0
+    for index in (1, 0):  # it is one still, and falls
+        qei.sample(*levels(8), index)
+        assert (qei.poscnt, qei.pir3) == (1, 0)
+    walk(qei, 8, 5)
+    assert (qei.poscnt, qei.pir3) == (0x10000 - 2, TURNED)
+    qei.pir3 = 0
+    qei.sample(*levels(5), 1)
+    assert (qei.poscnt, qei.pir3) == (0x10000 - 2, 0)
+    qei.sample(*levels(5), 0)
+    assert (qei.poscnt, qei.pir3) == (99, MATCHED)
 
 
 # --- PWM ------------------------------------------------------------------------------------------------
@@ -183,14 +253,73 @@ def test_the_fast_duty_is_the_share_of_the_edges(ptper: int, pdc: int) -> None:
 
 def test_resolution_is_half_a_cycle_and_ptper_has_15_bits() -> None:
     # FRM p. 15-20: 30 MIPS, PTPER 0x3FF: 11 bit at 29.3 kHz; PDC > 2 PTPER + 1 is 100 %
-    chip = pwm(0x3FF, 1, 2047, 2048)
+    chip = pwm(0x3FF, 1, 2047, 0xFFFF)
     assert chip.period == 2048
     assert 2 * 30e6 / chip.period == pytest.approx(29_297, abs=1)
     assert [chip.duty(pair) for pair in range(3)] == [1 / 2048, 2047 / 2048, 1.0]
     assert pwm(0xFFFF).period == 2 * 0x8000
-    chip.registers.put("PTCKPS", 2)
+
+
+@pytest.mark.parametrize(("code", "scale"), [(0, 1), (1, 4), (2, 16), (3, 64)])
+def test_a_prescaler_stretches_period_duty_and_special_event(code: int, scale: int) -> None:
+    chip = MotorControlPwm()
+    for name, value in {"PTPER": 99, "PDC1": 50, "SEVTCMP": 0x8000 | 30, "PTCON": code << 2}.items():
+        chip.registers[name] = value  # bit 15 of SEVTCMP is a direction, which counting up has not
+    heard: list[int] = []
+    chip.special_event = heard.append
+    chip.start(1000)
+    assert (chip.period, chip.duty(0)) == (200 * scale, 0.25)
+    assert on_time(chip.run(), 0, True, 0) == 50 * scale
+    assert heard == [1000 + 60 * scale]
+
+
+@pytest.mark.parametrize(("code", "scale"), [(0, 1), (1, 2), (2, 4), (3, 8)])
+def test_dead_time_has_a_prescaler(code: int, scale: int) -> None:
+    first, *_ = (edge for edge in pwm(999, 1200, dead=code << 6 | 63).run() if edge.pair == 0)
+    assert first == Edge(2 * 63 * scale, 0, True, True)  # two half cycles to a cycle
+
+
+def test_after_the_first_period_full_duty_has_no_dead_time_either() -> None:
+    chip = pwm(99, 200, dead=5)
     chip.run()
-    assert chip.period == 16 * 2048
+    assert [edge for edge in chip.run() if edge.pair == 0] == [Edge(200, 0, True, True)]
+
+
+def test_firmware_starts_the_time_base_by_its_bit() -> None:
+    chip = MotorControlPwm()
+    chip.registers["PTCON"] = 0x8000
+    assert [edge.half_cycles for edge in chip.run()] == [0, 0, 0]  # no duty: the low sides
+    assert chip.duty(0) == 0.0
+
+
+MASKS = {
+    "QEICON": {"CNTERR": 0x8000, "INDX": 0x1000, "UPDN": 0x0800, "QEIM": 0x0700, "SWPAB": 0x0080},
+    "DFLTCON": {"QEOUT": 0x0080},
+    "PTCON": {"PTEN": 0x8000, "PTCKPS": 0x000C, "PTMOD": 0x0003},
+    "PWMCON2": {"SEVOPS": 0x0F00},
+    "DTCON1": {"DTAPS": 0x00C0, "DTA": 0x003F},
+    "ADCON1": {"ADON": 0x8000, "SSRC": 0x00E0, "ASAM": 0x0004, "SAMP": 0x0002, "DONE": 0x0001},
+    "ADCON2": {"CHPS": 0x0300, "SMPI": 0x003C},
+    "ADCON3": {"ADCS": 0x003F},
+}
+"""Register maps of the FRM, sections 15 to 17."""
+AT_RESET = {"PTPER": 0x7FFF, "MAXCNT": 0xFFFF}
+"""What is not 0 there."""
+
+
+@pytest.mark.parametrize("chip", [QeiModule, MotorControlPwm, lambda: Adc(lambda _t, _c: 0.0, 1.0)])
+def test_registers_are_where_the_manual_has_them(
+    chip: Callable[[], QeiModule | MotorControlPwm | Adc],
+) -> None:
+    registers = chip().registers
+    for register in registers._values:
+        assert registers[register] == AT_RESET.get(register, 0)
+        for name, mask in MASKS.get(register, {}).items():
+            registers[register] = 0
+            registers.put(name, mask // (mask & -mask))
+            assert registers[register] == mask
+            registers[register] = 0x1_FFFF ^ mask
+            assert registers.field(name) == 0
 
 
 def test_period_and_duty_written_count_from_the_next_period_on() -> None:
@@ -274,3 +403,36 @@ def test_adc_triggers() -> None:
     adc.registers.put("ADON", 0)
     adc.registers.put("SAMP", 1)
     assert not adc.clear_samp(10_000)
+
+
+@pytest.mark.parametrize("code", [0, 1, 2, 3, 7])
+def test_a_trigger_is_heard_by_its_code_alone(code: int) -> None:
+    """FRM, register 17-1: SAMP, INT0, timer 3, PWM, the converter itself."""
+    adc = Adc(lambda _t, _c: 2.5, tcy_ns=100)
+    assert (adc.buffers, adc.interrupt, adc.ready_ns) == ([0] * 16, False, 0)
+    adc.registers["ADCON1"] = 0x8002 | code << 5
+    sources = (Ssrc.MANUAL, Ssrc.INT0, Ssrc.TIMER3, Ssrc.PWM, None, None, None, Ssrc.AUTO)
+    for source in (each for each in sources if each is not None and each is not sources[code]):
+        assert not adc.trigger(0, source)
+    wanted = sources[code]
+    assert wanted is not None and adc.trigger(0, wanted)
+
+
+@pytest.mark.parametrize(("code", "channels"), [(0, 1), (1, 2), (2, 4), (3, 4)])
+def test_channels_fill_the_buffers_one_after_the_other(code: int, channels: int) -> None:
+    adc = Adc(lambda t_ns, channel: (t_ns / 1e6 + channel) * 5 / 1024, tcy_ns=100)
+    adc.registers["ADCON1"] = 0x8004  # samples again by itself
+    adc.registers["ADCON2"] = code << 8 | 2 << 2  # interrupt after three
+    for place in range(5):
+        assert adc.clear_samp(place * 100_000_000) and adc.registers.field("SAMP") == 1
+        assert adc.interrupt == (place == 2)
+        first = place % 3 * channels
+        assert adc.buffers[first : first + channels] == [place * 100 + k for k in range(channels)]
+        adc.interrupt = False
+
+
+def test_sixteen_samples_fill_the_buffers() -> None:
+    adc = Adc(lambda t_ns, _c: t_ns * 5 / 1024, tcy_ns=0.01)
+    adc.registers["ADCON1"], adc.registers["ADCON2"] = 0x8004, 15 << 2
+    assert all(adc.clear_samp(place) for place in range(17))
+    assert adc.buffers == [16, *range(1, 16)]

@@ -57,6 +57,55 @@ def test_it_sends_what_its_registers_say() -> None:
     assert bench.can.get("TXB1CON") == 0
 
 
+IDENTIFIER = 0x0ABCDEF5
+PARTS = {"SIDH": 0x55, "SIDL": 0xE8, "EIDH": 0xDE, "EIDL": 0xF5}
+"""By hand: 28:21, 20:18 above the bit that says extended, 17:16 (0b00), 15:8, 7:0."""
+MASK = {"SIDH": 0xFF, "SIDL": 0xE3, "EIDH": 0xFF, "EIDL": 0xFF}
+DATA = bytes(range(0x11, 0x19))
+
+
+def fill(bench: Bench, buffer: str, values: dict[str, int]) -> None:
+    for part, value in values.items():
+        bench.can.set(buffer + part, value)
+
+
+@pytest.mark.parametrize("buffer", range(3))
+def test_each_transmit_buffer_sends_an_extended_frame(buffer: int) -> None:
+    bench = Bench().start()
+    whole = PARTS | {"DLC": 8} | {f"D{k}": byte for k, byte in enumerate(DATA)}
+    fill(bench, f"TXB{buffer}", whole | {"CON": 0x08})
+    bench.run()
+    assert bench.heard == [Frame(IDENTIFIER, DATA, extended=True)]
+    assert bench.can.get("PIR3") == 0x04 << buffer
+    assert [bench.can.get(f"TXB{buffer}{part}") for part in whole] == list(whole.values())
+
+
+@pytest.mark.parametrize("number", range(6))
+def test_each_filter_and_mask_tells_one_frame_from_others(number: int) -> None:
+    buffer = int(number > 1)  # filters 0 and 1 are of the first buffer
+    for loose, bit in (("none", 0), ("SIDH", 1 << 21), ("SIDL", 1 << 18), ("EIDH", 1 << 8), ("EIDL", 1)):
+        bench = Bench()
+        fill(bench, "RXM0", MASK)
+        fill(bench, "RXM1", MASK)
+        fill(bench, f"RXM{buffer}", {loose: 0} if bit else {})
+        fill(bench, f"RXF{number}", PARTS)
+        bench.start()
+        bench.can.set("RXB0CON", 0)
+        other = 1 << 8 if bit == 1 else 1
+        bench.partner_sends(Frame(IDENTIFIER ^ other, DATA, extended=True))
+        assert bench.can.get("PIR3") == 0
+        bench.partner_sends(Frame(IDENTIFIER ^ bit, DATA, extended=True))
+        assert bench.can.get("PIR3") == 1 << buffer
+        told = bench.can.get(f"RXB{buffer}CON")
+        assert told & 0x80 and told & (7 if buffer else 1) == number
+        if not bit:
+            found = [bench.can.get(f"RXB{buffer}{part}") for part in PARTS]
+            assert found[0] == PARTS["SIDH"] and found[1] & 0xEB == PARTS["SIDL"]
+            assert found[2:] == [PARTS["EIDH"], PARTS["EIDL"]]
+            assert bench.can.get(f"RXB{buffer}DLC") == 8
+            assert bytes(bench.can.get(f"RXB{buffer}D{k}") for k in range(8)) == DATA
+
+
 def test_a_receive_buffer_is_freed_by_rxful_not_by_its_flag() -> None:
     bench = Bench().start()
     bench.partner_sends(Frame(0x345, b"\x01"))
@@ -100,6 +149,33 @@ def test_error_state() -> None:
     bench.run()
     assert bench.can.get("TXB0CON") & 0x48 == 0x40
     assert bench.can.get("CANCON") == 0x10
+
+
+@pytest.mark.parametrize(
+    ("tec", "rec", "told"), [(95, 95, 0), (96, 0, 0x05), (0, 96, 0x03), (128, 0, 0x15), (0, 128, 0x0B)]
+)
+def test_comstat_tells_warnings_and_passive(tec: int, rec: int, told: int) -> None:
+    """DS39637, register 23-4: TXBP, RXBP, TXWARN, RXWARN, EWARN from bit 4 down."""
+    bench = Bench().start()
+    bench.can.port.tec, bench.can.port.rec = tec, rec
+    assert (bench.can.get("COMSTAT"), bench.can.get("TXERRCNT"), bench.can.get("RXERRCNT")) == (
+        told,
+        tec,
+        rec,
+    )
+
+
+def test_the_second_buffer_overflows_by_its_own_flag() -> None:
+    bench = Bench()
+    fill(bench, "RXM0", MASK)
+    bench.start()
+    bench.can.set("RXB0CON", 0)
+    bench.can.set("RXB1CON", 0x60)
+    for _ in range(2):
+        bench.partner_sends(Frame(0x123, b"\x01"))
+    assert (bench.can.get("COMSTAT"), bench.can.get("RXB1CON") & 0xE0) == (0x40, 0xE0)
+    bench.can.set("COMSTAT", 0x80)
+    assert bench.can.get("COMSTAT") == 0
 
 
 def test_registers_it_has_not_got_are_refused() -> None:

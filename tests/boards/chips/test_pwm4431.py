@@ -5,7 +5,32 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from boards.chips.pic18f4431 import Pwm4431
-from boards.chips.pic18f4431.pwm import ENABLED, PTMIF
+
+PTIF = 0x10
+ENABLED = ((), (1,), (0, 1), (0, 1, 2, 3), (0, 1, 2, 3, 4, 5), (0, 1, 2, 3, 4, 5, 6, 7), (1, 3), (1, 3, 5, 7))
+"""PWMEN of DS39616D, register 18-3: PWM1; PWM0 and 1; 0 to 3; 0 to 5; all; 1 and 3; all odd."""
+MASKS = {
+    "PTCON0": {"PTOPS": 0xF0, "PTCKPS": 0x0C, "PTMOD": 0x03}, "PTCON1": {"PTEN": 0x80},
+    "PWMCON0": {"PWMEN": 0x70, "PMOD": 0x0F}, "PWMCON1": {"SEVOPS": 0xF0, "UDIS": 0x02},
+    "DTCON": {"DTPS": 0xC0, "DT": 0x3F}, "OVDCOND": {}, "OVDCONS": {}, "PTPER": {}, "SEVTCMP": {},
+    "PDC0": {}, "PDC1": {}, "PDC2": {}, "PDC3": {},
+}  # fmt: skip
+AT_RESET = {"PTPER": 0xFFF, "OVDCOND": 0xFF, "PWMCON0": 0x50}
+"""What is not 0 after a reset."""
+
+
+def test_registers_are_where_the_data_sheet_has_them() -> None:
+    pwm = Pwm4431()
+    assert (pwm.pir3, pwm.outputs, pwm.duty(0), pwm.period) == (0, [False] * 8, 0.0, 4 * 4096)
+    for register, fields in MASKS.items():
+        assert pwm[register] == AT_RESET.get(register, 0)
+        for name, mask in fields.items():
+            pwm[register] = 0
+            pwm.put(name, mask // (mask & -mask))
+            assert pwm[register] == mask
+        pwm[register] = 0xFFFF
+        bits = 14 if register[:3] == "PDC" else 12 if register in ("PTPER", "SEVTCMP") else 8
+        assert pwm[register] == (1 << bits) - 1
 
 
 def running(period: int = 99, **registers: int) -> Pwm4431:
@@ -51,10 +76,14 @@ def test_20_khz_at_40_mhz_has_eleven_bits() -> None:
     assert 40e6 / pwm.period == 20_000
 
 
-def test_with_a_prescaler_the_two_lowest_bits_do_nothing() -> None:
-    pwm = running(99, PTCON0=0b0100, PDC0=0b111)
-    assert pwm.period == 4 * 100 * 4
-    assert highs(pwm, 1, 1) == [0b100 * 4]
+@pytest.mark.parametrize(("code", "scale"), [(1, 4), (2, 16), (3, 64)])
+def test_with_a_prescaler_the_two_lowest_bits_do_nothing(code: int, scale: int) -> None:
+    pwm = running(99, PTCON0=code << 2, PDC0=0b111, SEVTCMP=25)
+    heard: list[int] = []
+    pwm.special_event = heard.append
+    assert pwm.period == 4 * 100 * scale
+    assert highs(pwm, 1, 1) == [0b100 * scale]
+    assert heard == [4 * 25 * scale]
 
 
 def test_what_is_written_counts_from_the_next_period_on_and_udis_holds_it_back() -> None:
@@ -116,7 +145,7 @@ def test_special_event_and_time_base_interrupt_by_their_postscalers() -> None:
         flags.append(pwm.pir3)
         pwm.pir3 = 0
     assert heard == [400 + 100, 1200 + 100, 2000 + 100]  # every second period, 25 cycles of four clocks in
-    assert flags == [0, 0, PTMIF, 0, 0, PTMIF]
+    assert flags == [0, 0, PTIF, 0, 0, PTIF]
 
 
 def test_what_is_not_built_and_what_does_not_fit_is_said() -> None:

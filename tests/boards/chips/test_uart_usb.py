@@ -97,33 +97,42 @@ def get(device: HidDevice, kind: int, index: int = 0, length: int = 255, recipie
 
 def test_a_host_enumerates_the_device() -> None:
     device = HidDevice()
-    assert get(device, usb.DEVICE_TYPE, length=8) == usb.DEVICE[:8]
+    assert get(device, 1, length=8) == usb.DEVICE[:8]
     assert device.control(struct.pack("<BBHHH", 0, 5, 7, 0, 0)) == b""
     assert device.address == 7
-    told = get(device, usb.DEVICE_TYPE)
-    length, kind, version, *_ = struct.unpack("<BBHBBBBHHHBBBB", told)
-    assert (len(told), length, kind, version) == (18, 18, 1, 0x0200)
-    configuration = get(device, usb.CONFIGURATION_TYPE)
-    assert struct.unpack_from("<H", configuration, 2)[0] == len(configuration)
+    # USB 2.0, table 9-8: class by interface, end point 0 of 8 bytes, Microchip's numbers, release 1.00
+    told = (18, 1, 0x0200, 0, 0, 0, 8, 0x04D8, 0x003F, 0x0100, 1, 2, 0, 1)
+    assert struct.unpack("<BBHBBBBHHHBBBB", get(device, 1)) == told
+    configuration = get(device, 2)
+    # table 9-10: one interface, bus powered, 100 mA in units of two
+    assert struct.unpack_from("<BBHBBBBB", configuration) == (9, 2, len(configuration), 1, 1, 0, 0x80, 50)
     parts, at = [], 0
     while at < len(configuration):
         parts.append(configuration[at : at + configuration[at]])
         at += configuration[at]
     assert at == len(configuration)
     assert [part[1] for part in parts] == [2, 4, 0x21, 5, 5]
-    assert parts[1][4] == 2 and parts[1][5] == 3  # two endpoints, class HID
-    assert struct.unpack_from("<H", parts[2], 7)[0] == len(get(device, usb.REPORT_TYPE, recipient=0x81))
+    assert parts[1] == bytes((9, 4, 0, 0, 2, 3, 0, 0, 0))  # two endpoints, class HID
+    report = get(device, 0x22, recipient=0x81)
+    assert struct.unpack("<BBHBBBH", parts[2]) == (9, 0x21, 0x0111, 0, 1, 0x22, len(report))
+    assert get(device, 0x21) == parts[2]
     for part, address in ((parts[3], 0x81), (parts[4], 0x01)):
         assert struct.unpack("<BBBBHB", part) == (7, 5, address, 3, 64, 1)
     assert device.control(struct.pack("<BBHHH", 0, 9, 1, 0, 0)) == b""
     assert device.control(struct.pack("<BBHHH", 0x80, 8, 0, 0, 1)) == b"\x01"
     assert device.control(struct.pack("<BBHHH", 0x80, 0, 0, 0, 2)) == bytes(2)
     assert device.control(struct.pack("<BBHHH", 0x21, 0x0A, 0, 0, 0)) == b""
-    assert get(device, usb.STRING_TYPE, 2)[2:].decode("utf-16-le") == "Schmidt gateway"
+    assert get(device, 3, 0) == bytes((4, 3, 0x09, 0x04))  # English
+    for index, name in ((1, "ARIES"), (2, "Schmidt gateway")):
+        text = get(device, 3, index)
+        assert (text[0], text[1], text[2:].decode("utf-16-le")) == (len(text), 3, name)
+    assert device.control(struct.pack("<BBHHH", 0, 9, 0, 0, 0)) == b""
+    assert device.control(struct.pack("<BBHHH", 0x80, 8, 0, 0, 1)) == b"\x00"
+    assert device.control(struct.pack("<BBHHH", 0, 5, 127, 0, 0)) == b"" and device.address == 127
 
 
 def test_the_report_descriptor_says_64_bytes_each_way() -> None:
-    at, size, count, bits = 0, 0, 0, {}
+    at, size, count, bits, items = 0, 0, 0, {}, []
     while at < len(usb.REPORT):  # HID 1.11, 6.2.2.2: short items
         prefix = usb.REPORT[at]
         data = usb.REPORT[at + 1 : at + 1 + (0, 1, 2, 4)[prefix & 3]]
@@ -135,7 +144,11 @@ def test_the_report_descriptor_says_64_bytes_each_way() -> None:
         elif prefix & 0xFC in (0x80, 0x90):
             bits[prefix & 0xFC] = size * count
         at += 1 + len(data)
+        items.append((prefix & 0xFC, value))
     assert bits == {0x80: 512, 0x90: 512}
+    # vendor's page and usage, an application; bytes; a variable each way
+    head = [(0x04, 0xFF00), (0x08, 1), (0xA0, 1), (0x14, 0), (0x24, 255), (0x74, 8), (0x94, 64)]
+    assert items == [*head, (0x08, 1), (0x80, 2), (0x08, 1), (0x90, 2), (0xC0, 0)]
 
 
 @pytest.mark.parametrize(
@@ -149,6 +162,13 @@ def test_the_report_descriptor_says_64_bytes_each_way() -> None:
         struct.pack("<BBHHH", 0, 9, 2, 0, 0),
         struct.pack("<BBHHH", 0, 5, 128, 0, 0),
         struct.pack("<BBHHH", 0x40, 6, 0x0100, 0, 255),
+        bytes(9),
+        *(
+            struct.pack("<BBHHH", kind, request, 1, 0, 0)
+            for kind, request in ((0x80, 5), (0x80, 9), (0, 8), (0, 0), (0x20, 0x0A), (0, 6), (0x80, 1))
+        ),
+        *(struct.pack("<BBHHH", 0x80, 6, kind << 8, 0, 255) for kind in (0, 4, 0x20, 0x23)),
+        struct.pack("<BBHHH", 0x80, 6, 0x0303, 0, 255),
     ],
 )
 def test_what_it_does_not_know_it_stalls(setup: bytes) -> None:
@@ -166,6 +186,10 @@ def test_reports_wait_for_the_host_to_poll_once_a_frame() -> None:
     assert not device.put(one)
     assert device.poll(0) is None  # not configured
     device.configuration = 1
+    assert device.poll(0) == one
+    assert device.put(one)
+    assert device.poll(4_999_999) == two
+    assert device.put(two)
     assert device.poll(5_000_000) == one
     assert device.poll(5_999_999) is None
     assert device.poll(6_000_000) == two
