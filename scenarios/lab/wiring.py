@@ -16,6 +16,7 @@ from scenarios.lab.faults.live import Faults
 from scenarios.lab.network import Network, build
 from scenarios.lab.networks import config_from
 from scenarios.lab.prepare import chosen
+from scenarios.language.document import ScenarioError
 from scenarios.language.model import Scenario
 
 _FOCUS_START = 5  # The focus is found at most this many electrical periods from the middle. ASSUMPTION.
@@ -38,8 +39,8 @@ def powered(scenario: Scenario, model: PlantModel) -> Network:
     config = config_from(scenario.network, limits, scenario.file.parent)
     try:
         made = build(config, pins, scenario.seed, scenario.site.humidity)
-    except NetworkError as error:
-        raise NetworkError(f"{scenario.file}: {error}") from None
+    except ValueError as error:
+        raise ScenarioError(f"{scenario.file}: {error}") from None
     made.chain = chained(made, soft_rad, scenario.network.get("chain", SWITCHES))
     if wind_from is not None:
         made.blowing = Blowing(made, wind_from / ARCSEC_PER_RAD)
