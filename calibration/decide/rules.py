@@ -130,6 +130,8 @@ def within_bounds(resolved: float) -> Rule:
         if any(at[n] <= resolved for n in loops if n in at):
             return "narrower than the sensor's steps show"
         told = parameters_of(s, k)
+        if "width" in told and (told["width"].low or 0.0) < 0.0:
+            return "as wide as nothing, by its interval"
         if "order" in told and (told["order"].low or 0.0) < 0.0:
             return "of any order, by its interval"
         return "no damping of a resonance" if "damping" in told and not rings(told["damping"]) else ""

@@ -14,6 +14,7 @@ from calibration.balances.slowoffset import offset_order, slowness
 from calibration.balances.view import View, fade
 from calibration.decide.controls import controls, order_beside
 from calibration.decide.parameters import findings_of
+from calibration.decide.onecolumn import by_one_column
 from calibration.decide.residual import beyond_names, left_over, of_one_domain, quick_lines, settle
 from calibration.decide.selection import Selection
 from calibration.decide.thresholds import AS_MUCH
@@ -164,7 +165,7 @@ def _told(view: View, when: Timed, notes: list[str]) -> Balance:
         floor, source = float(np.hypot(floor, wind)), f"{source}, and the effort's through the wind-up"
     still = [] if np.any(np.abs(view.direction) > 0.5) else ["the position does not move"]
     notes = [*notes, *filter(None, [when.note]), f"floor of {channel}: {source}", *filtered(view), *still]
-    s, together, beyond = beyond_names(s, scene)
+    s, together, beyond = by_one_column(*beyond_names(s, scene), scene)
     named = [
         _of_the_zero(replace(f, share=x), s.effect(k)[problem.train], when.offsets, view)
         for k, x in enumerate(s.worth)

@@ -83,19 +83,22 @@ def test_only_of_two_names_at_one_order_the_lesser_goes() -> None:
 
 
 BOUNDS = {
+    "width": Parameter(1.0, "deg", -0.1, 2.0),
     "order": Parameter(1.0, "1", -0.1, 2.0),
     "damping": Parameter(0.5, "1", 0.4, 1.5),
 }
 
 
 @pytest.mark.parametrize("name", BOUNDS)
-def test_a_shape_of_no_order_or_no_resonance_goes(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_shape_of_no_width_no_order_or_no_resonance_goes(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     s = of(A, one("damaged_tooth", A))
     told: dict[str, Parameter] = {}
     monkeypatch.setattr(rules, "parameters_of", lambda s, k: told)
     assert within_bounds(0.1)(s) is None
     told[name] = BOUNDS[name]
-    words = {"order": "of any order", "damping": "no damping of a resonance"}
+    words = {"width": "as wide as nothing", "order": "of any order", "damping": "no damping of a resonance"}
     assert within_bounds(0.1)(s)[1].startswith(words[name])  # type: ignore[index]
     low = 0.01 if name == "damping" else 0.0
     told[name] = Parameter(0.02, "1", low, 0.05)
