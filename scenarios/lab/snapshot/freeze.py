@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from boards.c.library import FirmwareError
 from scenarios.lab.snapshot import admitted, code
 from scenarios.lab.snapshot.code import Nobody
 from scenarios.native.finder import compiled
@@ -181,5 +182,7 @@ def restore(data: bytes, outside: Mapping[str, Any] | None = None, refused: tupl
         return _Unpickler(io.BytesIO(body), outside or {}, refused).load()
     except SnapshotError:
         raise
+    except FirmwareError as error:
+        raise SnapshotError(f"snapshot: {error}") from None
     except Exception:  # a pickle that was cut or changed raises nearly anything
         raise SnapshotError("snapshot: damaged; take it again") from None

@@ -245,7 +245,7 @@ def test_a_compiler_is_not_told_to_run_a_program(kind: type, flags: tuple[str, .
 def test_a_module_is_not_reached_through_a_method() -> None:
     """A function's globals hold the modules that its own imports."""
     head, digest, _ = take(None).split(b"\n", 2)
-    body = b"cbuiltins\ngetattr\n(cboards.core.commands\n_nothing\nV__globals__\ntR."
+    body = b"cbuiltins\ngetattr\n(cboards.core.interrupts\n_no_routine\nV__globals__\ntR."
     with pytest.raises(SnapshotError, match="__globals__ has no business"):
         restore(b"\n".join((head, digest, body)))
 
