@@ -1,24 +1,30 @@
-"""Two names for one trace: which of them held-out rows have, and which comes first where they do not say."""
+"""Two names for one trace: which of them held-out rows have, and which comes first where they do not say.
+
+Two lines that a log at one speed does not tell apart are one, whose size or rate changes along the log.
+"""
 
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 
 from calibration.arrays import Array
 from calibration.balances.candidate import Candidate, sine_columns
 from calibration.decide.heldout import compare
-from calibration.decide.scan import fit_with
+from calibration.decide.scan import Contender, fit_with
 from calibration.decide.selection import Selection
 from calibration.decide.thresholds import LUCK_Z
 from calibration.finding import UNKNOWN
 from calibration.names import gravity_imbalance
 from calibration.names.brake_drag import CHANGES
-from calibration.names.lines import CLOCKED
+from calibration.names.lines import CLOCKED, on_clock
 from calibration.names.scene import Scene
 from calibration.statistics.regression import solve
 
 # frequencies within a resolution cell, by which the clock's is found. ASSUMPTION: a tenth of a cell apart
 TRIED = 21
+# cycles by which two lines part within the travel, before it tells them apart (Rayleigh). definition
+PARTED = 1.0
 
 
 def told_by_the_clock(s: Selection, scene: Scene) -> Selection:
@@ -87,6 +93,41 @@ def _clocked(s: Selection, k: int, scene: Scene) -> Selection:
     for half in (1.0, 2.0 / (TRIED - 1)):
         best = min(best + np.linspace(-half, half, TRIED), key=left)
     return s.put(k, replace(s.chosen[k], candidate=replace(c, columns=waves_at(best))))
+
+
+def one_line(s: Selection, scene: Scene) -> Selection:
+    """Of a line of no stage and one on the clock beside it the latter stays, unless held-out rows refuse it.
+
+    A line that fades in is a line and one next to it. The second has a name of its own by accident alone.
+    """
+    for place, clock in product(range(len(s.chosen)), repeat=2):
+        if not _beside(scene, s.candidates[place], s.candidates[clock]):
+            continue
+        why = f"the log does not tell its line from that of {s.candidates[clock].say()}"
+        on_the_clock = [s.put(clock, c).without(place, why) for c in _either(s, scene, place, clock)]
+        rather = s.without(clock)
+        held = (compare(s.problem, c.model, rather.model, rather.after.whitener) for c in on_the_clock)
+        if not all(one.sure for one in held):
+            return one_line(min(on_the_clock, key=lambda c: c.fitted_square), scene)
+        why = f"the log does not tell its line from that of {s.candidates[place].say()}"
+        return one_line(s.without(clock, why), scene)
+    return s
+
+
+def _either(s: Selection, scene: Scene, place: int, clock: int) -> list[Contender]:
+    """The line on the clock as it was found, and where the one over the place was."""
+    x, hertz = s.chosen[clock], _rate(scene, s.candidates[place]) * abs(scene.one_speed[0])
+    return [x, replace(x, candidate=x.candidate.moved(np.array([hertz])))]
+
+
+def _beside(scene: Scene, place: Candidate, clock: Candidate) -> bool:
+    """Whether a line of no stage and one on the clock part by less than a cycle, where the speed is one."""
+    if (place.kind, clock.kind) != ("line", "line") or place.order is None or place.stage is not None:
+        return False
+    rate = _rate(scene, place)
+    if clock.shape is None or clock.free != ["frequency"] or not on_clock(scene, rate):
+        return False
+    return abs(rate - float(clock.point[0]) / abs(scene.one_speed[0])) * scene.span < PARTED
 
 
 def _rate(scene: Scene, place: Candidate) -> float:

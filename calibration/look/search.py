@@ -10,6 +10,7 @@ from calibration.decide import rules
 from calibration.decide.select import select
 from calibration.decide.selection import Selection
 from calibration.decide.thresholds import AS_MUCH, NOISE_SHARE, STILL_MISSING
+from calibration.decide.twins import one_line
 from calibration.names import NAMES
 from calibration.names.bearing_pass import free_lines
 from calibration.names.scene import Scene
@@ -84,6 +85,7 @@ def _search(view: View, problem: Problem) -> tuple[Selection, Scene]:
         if not any(c.name in searched for c in s.candidates) and k > 0:
             break
     assert s is not None
+    s = one_line(s, scene)
     s = rules.signed(rules.leave_out(s, rules.within_bounds(view.resolved), rules.cancelled))
     # again: what was left out moves the sizes of the others
     s = rules.signed(rules.leave_out(s, rules.worth_little, rules.remainder))
