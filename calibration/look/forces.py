@@ -13,8 +13,8 @@ from calibration.balances.problem import Problem
 from calibration.balances.slowoffset import offset_order, slowness
 from calibration.balances.view import View, fade
 from calibration.decide.controls import controls, order_beside
-from calibration.decide.parameters import findings_of
 from calibration.decide.onecolumn import by_one_column
+from calibration.decide.parameters import findings_of
 from calibration.decide.residual import beyond_names, left_over, of_one_domain, quick_lines, settle
 from calibration.decide.selection import Selection
 from calibration.decide.thresholds import AS_MUCH
