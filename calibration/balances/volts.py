@@ -37,10 +37,10 @@ class Windings:
     """Columns of one winding, or of motor A and then of motor B.
 
     At full rate (n,): current A; duty, and the supply V that it is of, empty where volts are measured. `at`
-    takes such columns to the fitted rows. On these (n_fitted,): rate of the motor that makes back-EMF (of two
-    motors rad/s the way it pulls, zero where it is dragged and no diode is declared). Also (n_fitted,): clock
-    s, and the time in every file where files are several runs of a rig. resistance ohm, constant V per unit
-    of the rate: fitted without any effect.
+    takes such columns to the fitted rows. On these (n_fitted,): rate of the motor that makes back-EMF. Of two
+    motors it is in rad/s the way each pulls, zero where it is dragged and no diode is declared. Also
+    (n_fitted,): clock s, and the time in every file where files are several runs of a rig. resistance ohm,
+    constant V per unit of the rate: fitted without any effect.
     """
 
     at: Callable[[Array], Array]

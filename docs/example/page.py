@@ -55,7 +55,7 @@ The same channel on the held-out rows, before and after:
     schmidt run scenarios/quick-look.yaml --plant out/example/plant.yaml --out out/example-night
 
 ## The seal, opened
-It was {truth}. The corrected plant has these effects:
+It was {truth}. Beside the declared effects the corrected plant has:
 
 {found}
 
@@ -95,7 +95,8 @@ def page(report: dict[str, Any], plant: Path) -> str:
     name = in_words(first["name"], first["stage"], first["harmonic"])
     parameters = "; ".join(number(k, p) for k, p in first["parameters"].items())
     sealed = ", ".join(f"{k} {p['value']:g} {p['unit']}" for k, p in truth["parameters"].items())
-    made = load(plant).axes.ra.effects
+    named = {(e["name"], e["stage"], e["harmonic"]) for e in report["effects"]}
+    made = [e for e in load(plant).axes.ra.effects if (e.name, e.stage, e.harmonic) in named]
     fitted = "\n".join(
         f"- {in_words(e.name, e.stage, e.harmonic)}: "
         + ", ".join(f"{k} {n.value:.4g} {n.unit}" for k, n in e.parameters.items())
