@@ -28,6 +28,8 @@ def test_registers_are_where_the_data_sheet_has_them() -> None:
             pwm[register] = 0
             pwm.put(name, mask // (mask & -mask))
             assert pwm[register] == mask
+            with pytest.raises(ValueError, match="does not fit"):
+                pwm.put(name, mask // (mask & -mask) + 1)
         pwm[register] = 0xFFFF
         bits = 14 if register[:3] == "PDC" else 12 if register in ("PTPER", "SEVTCMP") else 8
         assert pwm[register] == (1 << bits) - 1
