@@ -50,7 +50,7 @@ def test_a_byte_is_a_start_bit_eight_bits_and_a_stop_bit() -> None:
     assert heard == [10**9]  # ten bits at 10 baud
 
 
-@pytest.mark.parametrize(("fifo", "depth"), [(FIFO_DSPIC, 4), (FIFO_PIC18, 2)])
+@pytest.mark.parametrize(("fifo", "depth"), [(FIFO_DSPIC, 4), (FIFO_PIC18, 2)], ids=["dsPIC", "PIC18"])
 def test_an_overrun_loses_bytes_until_it_is_cleared(fifo: int, depth: int) -> None:
     queue, one, two = pair(depth=fifo)
     one.send(bytes(range(depth + 2)))
@@ -164,7 +164,7 @@ def test_the_report_descriptor_says_64_bytes_each_way() -> None:
             bits[prefix & 0xFC] = size * count
         at += 1 + len(data)
         items.append((prefix & 0xFC, value))
-    assert bits == {0x80: 512, 0x90: 512}
+    assert bits == {0x80: 512, 0x90: 512} and at == len(usb.REPORT)
     # vendor's page and usage, an application; bytes; a variable each way
     head = [(0x04, 0xFF00), (0x08, 1), (0xA0, 1), (0x14, 0), (0x24, 255), (0x74, 8), (0x94, 64)]
     assert items == [*head, (0x08, 1), (0x80, 2), (0x08, 1), (0x90, 2), (0xC0, 0)]
