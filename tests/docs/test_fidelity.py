@@ -158,6 +158,7 @@ CHIPS = {
     "pwm": ("| B1 | axis: PWM |", "| B1 | axis: spread duty"),
     "qei": ("| B1 | axis: QEI |",),
     "quadrature": ("| dsPIC30F QEI |", "| PIC18F4431 QEI |"),
+    "registers": ("| dsPIC30F QEI |", "| PIC18F4431 power PWM |"),
     "stepper": ("| B5 | focus: stepper |", "| stepper |"),
     "uart": ("| B9 | five: RS232 |",),
     "uartline": ("| UART |",),

@@ -30,7 +30,7 @@ class QeiModule:
             return
         step = self._decoder.edge(a, b, x2=mode in _X2)
         if step:
-            registers.put("UPDN", int(step > 0))
+            registers.put("UPDN", int(step == 1))
             self._count(mode, step)
         # The index counts where it coincides with A = B = low.
         pulse = int(bool(index) and not a and not b)
@@ -42,11 +42,11 @@ class QeiModule:
 
     def _count(self, mode: int, step: int) -> None:
         registers = self.registers
-        position, top = registers["POSCNT"], registers["MAXCNT"]
-        if mode not in _BY_INDEX and position == (top if step > 0 else 0):
-            registers["POSCNT"] = 0 if step > 0 else top
+        position, top, up = registers["POSCNT"], registers["MAXCNT"], step == 1
+        if mode not in _BY_INDEX and position == (top if up else 0):
+            registers["POSCNT"] = 0 if up else top
             self.interrupt = True
             return
         registers["POSCNT"] = position + step
-        if mode in _BY_INDEX and registers["POSCNT"] == (top + 1 & 0xFFFF if step > 0 else 0xFFFF):
+        if mode in _BY_INDEX and registers["POSCNT"] == (top + 1 & 0xFFFF if up else 0xFFFF):
             registers.put("CNTERR", 1)  # an index pulse was missed

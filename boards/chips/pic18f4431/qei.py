@@ -55,16 +55,15 @@ class Qei4431:
         self._reset_by_index(mode, index)
 
     def _turn(self, step: int) -> None:
-        up = UP_DOWN if step > 0 else 0
-        if up != self.qeicon & UP_DOWN:
+        if (step == 1) != bool(self.qeicon & UP_DOWN):
             self.qeicon ^= UP_DOWN
             self.pir3 |= IC3DRIF
 
     def _count(self, mode: int, step: int) -> None:
         """Up: MAXCNT is followed by 0; down: 0 by MAXCNT (by index: the counter just wraps)."""
-        limit = self.maxcnt if step > 0 else 0
-        if mode not in BY_INDEX and self.poscnt == limit:
-            self.poscnt = 0 if step > 0 else self.maxcnt
+        end, begin = (self.maxcnt, 0) if step == 1 else (0, self.maxcnt)
+        if mode not in BY_INDEX and self.poscnt == end:
+            self.poscnt = begin
             self.pir3 |= IC2QEIF
         else:
             self.poscnt = self.poscnt + step & 0xFFFF

@@ -31,11 +31,11 @@ DEVICE = bytes(
     (
         18, DEVICE_TYPE, 0x00, 0x02,  # USB 2.0
         0, 0, 0, 8,  # class by interface, endpoint 0 of 8 bytes
-        VENDOR & 0xFF, VENDOR >> 8, PRODUCT & 0xFF, PRODUCT >> 8, 0x00, 0x01, 1, 2, 0, 1,
+        *VENDOR.to_bytes(2, "little"), *PRODUCT.to_bytes(2, "little"), 0x00, 0x01, 1, 2, 0, 1,
     )
 )  # fmt: skip
 
-HID = bytes((9, HID_TYPE, 0x11, 0x01, 0, 1, REPORT_TYPE, len(REPORT) & 0xFF, len(REPORT) >> 8))
+HID = bytes((9, HID_TYPE, 0x11, 0x01, 0, 1, REPORT_TYPE, *len(REPORT).to_bytes(2, "little")))
 
 
 def _endpoint(address: int) -> bytes:

@@ -58,7 +58,10 @@ def test_maxcnt_match_wraps_both_ways_and_interrupts() -> None:
 @pytest.mark.parametrize("mode", [Qeim.X2_MATCH, Qeim.X2_INDEX])
 def test_x2_counts_the_edges_of_a_only(mode: Qeim) -> None:
     qei = dspic(mode)
-    walk(qei, 0, 40)
+    for count, counted in ((1, 1), (2, 1), (3, 2), (4, 2)):  # A changes, B does, A, B
+        walk(qei, count, count)
+        assert qei.registers["POSCNT"] == counted
+    walk(qei, 4, 40)
     assert qei.registers["POSCNT"] == 20
     walk(qei, 40, 20)
     assert qei.registers["POSCNT"] == 10
@@ -112,6 +115,17 @@ def test_each_input_has_its_filter() -> None:
         assert (qei.registers["POSCNT"], qei.registers.field("INDX")) == (3, 0)
     qei.sample(0, 0, 1)
     assert (qei.registers["POSCNT"], qei.registers.field("INDX"), qei.interrupt) == (0, 1, True)
+
+
+def test_an_index_at_the_first_sample_counts() -> None:
+    for qei in (dspic(Qeim.X4_INDEX), Qei4431()):
+        if isinstance(qei, QeiModule):
+            qei.registers["POSCNT"] = 5
+            qei.registers.put("UPDN", 1)
+        else:
+            qei.qeicon, qei.poscnt = qei.qeicon | X4_INDEX, 5
+        qei.sample(0, 0, 1)
+        assert (qei.registers["POSCNT"] if isinstance(qei, QeiModule) else qei.poscnt) == 0
 
 
 def test_an_index_counts_once_and_in_index_mode_only() -> None:
@@ -318,6 +332,8 @@ def test_registers_are_where_the_manual_has_them(
             registers[register] = 0
             registers.put(name, mask // (mask & -mask))
             assert registers[register] == mask
+            with pytest.raises(ValueError, match="does not fit"):
+                registers.put(name, mask // (mask & -mask) + 1)
             registers[register] = 0x1_FFFF ^ mask
             assert registers.field(name) == 0
 

@@ -28,6 +28,8 @@ def test_registers_are_where_the_data_sheet_has_them() -> None:
             pwm[register] = 0
             pwm.put(name, mask // (mask & -mask))
             assert pwm[register] == mask
+            with pytest.raises(ValueError, match="does not fit"):
+                pwm.put(name, mask // (mask & -mask) + 1)
         pwm[register] = 0xFFFF
         bits = 14 if register[:3] == "PDC" else 12 if register in ("PTPER", "SEVTCMP") else 8
         assert pwm[register] == (1 << bits) - 1
@@ -115,6 +117,31 @@ def test_complementary_outputs_are_never_on_together_and_dead_time_lies_between(
             off_at[channel] = at
 
 
+@pytest.mark.parametrize(("code", "scale"), [(0, 2), (1, 4), (2, 8), (3, 16)])
+def test_the_dead_time_counts_clocks_of_its_prescaler(code: int, scale: int) -> None:
+    first, *_ = (each for each in running(999, PDC0=2000, DTCON=code << 6 | 63).run() if each.channel == 1)
+    assert (first.q_clocks, first.on) == (63 * scale, True)
+
+
+def test_at_full_duty_nothing_changes_any_more() -> None:
+    pwm = running(99, PDC0=400, DTCON=0x3F)
+    assert [each for each in pwm.run() if each.channel < 2] == [(0, 1, True)]
+    assert [each for each in pwm.run() if each.channel < 2] == []
+
+
+@pytest.mark.parametrize("pair", range(4))
+def test_each_pair_is_independent_by_its_own_bit(pair: int) -> None:
+    pwm = running(99, PDC0=100, PDC1=100, PDC2=100, PDC3=100, PWMCON0=0x50 | 1 << pair)
+    rises = {each.channel: each.q_clocks for each in pwm.run() if each.on}
+    assert rises == {channel: 100 * (channel % 2 == 0 and channel // 2 != pair) for channel in range(8)}
+
+
+def test_each_output_is_overridden_by_its_own_bit() -> None:
+    pwm = running(OVDCOND=0, OVDCONS=0b10100110)
+    pwm.run()
+    assert pwm.outputs == [False, True, True, False, False, True, False, True]
+
+
 def test_independent_outputs_follow_the_same_duty_without_dead_time() -> None:
     pwm = running(99, PDC0=100, PWMCON0=0x5F, DTCON=0x3F)
     assert highs(pwm, 0, 1) == [100]
@@ -133,6 +160,15 @@ def test_channels_that_are_not_enabled_stay_low(enabled: int) -> None:
     pwm = running(99, PDC0=200, PDC1=200, PDC2=200, PDC3=200, PWMCON0=enabled << 4)
     on = {edge.channel for _ in range(2) for edge in pwm.run() if edge.on}
     assert on == set(ENABLED[enabled])
+
+
+def test_a_special_event_beyond_the_period_never_comes() -> None:
+    heard: list[int] = []
+    for compare in (99, 100):
+        pwm = running(99, SEVTCMP=compare)
+        pwm.special_event = heard.append
+        pwm.run()
+    assert heard == [4 * 99]
 
 
 def test_special_event_and_time_base_interrupt_by_their_postscalers() -> None:

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from boards.chips.uartline import FIFO_PIC18, Received, UartLine
+from boards.chips.uartline import FIFO_DSPIC, FIFO_PIC18, Received, UartLine, line_levels
 from boards.chips.usb import HidDevice, Stall
 from boards.chips.usb import device as usb
 from boards.silicon.uart import Uart
@@ -40,9 +40,19 @@ def test_a_byte_takes_ten_bits_as_in_the_packets_of_the_boards() -> None:
     assert heard == [Uart(queue).duration_ns(1), 2 * Uart(queue).duration_ns(1)]
 
 
-@pytest.mark.parametrize("depth", [4, FIFO_PIC18])
-def test_an_overrun_loses_bytes_until_it_is_cleared(depth: int) -> None:
-    queue, one, two = pair(depth=depth)
+def test_a_byte_is_a_start_bit_eight_bits_and_a_stop_bit() -> None:
+    assert line_levels(0x55) == [0, 1, 0, 1, 0, 1, 0, 1, 0, 1]
+    queue, one, two = pair(10)
+    heard: list[int] = []
+    two.interrupt = heard.append
+    one.send(b"a")
+    queue.run_until(2 * 10**9)
+    assert heard == [10**9]  # ten bits at 10 baud
+
+
+@pytest.mark.parametrize(("fifo", "depth"), [(FIFO_DSPIC, 4), (FIFO_PIC18, 2)], ids=["dsPIC", "PIC18"])
+def test_an_overrun_loses_bytes_until_it_is_cleared(fifo: int, depth: int) -> None:
+    queue, one, two = pair(depth=fifo)
     one.send(bytes(range(depth + 2)))
     queue.run_until(10**9)
     assert two.overrun
@@ -73,6 +83,15 @@ def test_baud_rates_within_4_percent_work_others_do_not(baud: int, byte: int, go
     one.send(bytes((byte,)))
     queue.run_until(10**9)
     assert (two.read() == Received(byte, False)) == good
+
+
+def test_behind_the_stop_bit_the_line_idles_high() -> None:
+    """Looking later than a byte lasts: at half the rate bits 3 to 7 of nothing; 7 % late the stop bit."""
+    for baud, byte, told in ((57_600, 0x00, 0xF8), (108_000, 0xFF, 0xFF)):
+        queue, one, two = pair(115_200, baud)
+        one.send(bytes((byte,)))
+        queue.run_until(10**9)
+        assert two.read() == Received(told, False)
 
 
 def test_framing_error() -> None:
@@ -145,7 +164,7 @@ def test_the_report_descriptor_says_64_bytes_each_way() -> None:
             bits[prefix & 0xFC] = size * count
         at += 1 + len(data)
         items.append((prefix & 0xFC, value))
-    assert bits == {0x80: 512, 0x90: 512}
+    assert bits == {0x80: 512, 0x90: 512} and at == len(usb.REPORT)
     # vendor's page and usage, an application; bytes; a variable each way
     head = [(0x04, 0xFF00), (0x08, 1), (0xA0, 1), (0x14, 0), (0x24, 255), (0x74, 8), (0x94, 64)]
     assert items == [*head, (0x08, 1), (0x80, 2), (0x08, 1), (0x90, 2), (0xC0, 0)]
