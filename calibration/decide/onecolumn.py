@@ -16,15 +16,17 @@ def by_one_column(
     """The answer of `beyond_names` with one smooth function instead of several, of which one has no name.
 
     A load follows the place and the direction of the motion. What hangs on the load then looks like a sum of
-    functions of both, none of which explains it. Where a name of that column is among them, it stays.
+    functions of both, none of which explains it. Names of such a column stay that leave as little.
     """
-    named = {c.domain for c in together.candidates if c.name != UNKNOWN}
     if len(together.chosen) > 1 and any(c.name == UNKNOWN for c in together.candidates):
         model, scene.model = scene.model, None
-        columns = [c for c in smooth_functions(scene) if c.domain in OTHER_COLUMNS and c.domain not in named]
+        columns = [c for c in smooth_functions(scene) if c.domain in OTHER_COLUMNS]
         alone = select(s.problem, columns, most=1, before=s.looked_at)
         scene.model = model
         as_little = alone.held.after <= STILL_MISSING * max(together.held.after, s.problem.floor)
+        theirs = s.keep([x for x in s.chosen if x.candidate.domain in OTHER_COLUMNS])
+        if theirs.held.after <= STILL_MISSING * alone.held.after:
+            return s, together, findings
         if alone.chosen and as_little and alone.held.taken > AS_MUCH * together.held.taken:
             why = f"{alone.candidates[0].say()} over {alone.candidates[0].domain} alone takes as much"
             instead = [Refusal(c.say(), why) for c in together.candidates]
