@@ -30,7 +30,7 @@ from calibration.look.looked import Balance, Options, Spectrum, calibrated
 from calibration.look.loopslaw import follows, law_of_its_loop
 from calibration.look.said import close, filtered, lacking_names, moves_with, place_of, wound_up
 from calibration.look.search import find, scene_of
-from calibration.look.settled import few_values, one_filter, sharpest, turned
+from calibration.look.settled import doubts, few_values, one_filter, sharpest, turned
 from calibration.look.slips import slipped
 
 SWAYS = 6  # waves that a zero may make within a file: along more moves it follows none. ASSUMPTION
@@ -65,7 +65,7 @@ def look_at_forces(view: View, records: list[Run], options: Options) -> Balance:
     told = _told(view, when, notes)
     law = follows(view, made(), told.selection.held.after) if told.missing else []
     findings = [*told.findings, event] if event else told.findings
-    return replace(told, findings=findings, remarks=[*remarks, *law])
+    return replace(told, findings=findings, remarks=[*remarks, *law, *doubts(view, told)])
 
 
 def _found(view: View, made: Make) -> tuple[Timed, list[str]]:

@@ -13,9 +13,15 @@ from calibration.balances.view import NYQUIST, STANDSTILLS, View, choose_rows, f
 from calibration.decide.heldout import cross_validate
 from calibration.inputs.run import Run, numbers
 from calibration.look.delay import Make, Timed, left_by_the_declared
+from calibration.look.looked import Balance
 from calibration.names.unknown import KNOTS
 from calibration.names.unknown_shapes import spline_columns
 
+# times what is left, from where on a floor is said to hide it. ASSUMPTION: a factor of four in the square
+ABOVE = 2.0
+# of the rows one way, that go the other way at least, of a drive that goes both. ASSUMPTION
+BOTH_WAYS = 0.2
+LITTLE = 0.05  # of the effort's variation, for friction that is none. ASSUMPTION
 # amplitude behind a filter, below which a wave is not seen there. ASSUMPTION: as little as half is still seen
 HARDLY = 0.5
 
@@ -81,6 +87,22 @@ def few_values(records: list[Run], view: View, p: Problem) -> str:
         f"{channel} holds {values} values, the model has {terms} terms: no balance"
         " can be tested with it; as response take a measured current or force"
     )
+
+
+def doubts(view: View, told: Balance) -> list[str]:
+    """What makes an answer worth little: a floor far above what is left, an effort without its sign."""
+    channel, s, unit = view.response.channel, told.selection, view.unit
+    out = []
+    if told.floor and not told.findings and told.floor > ABOVE * s.held.after:
+        rest = f"{told.floor:.3g} {unit}, {told.floor / s.held.after:.1f} times what is left"
+        out.append(f"{channel}: its floor is {rest}: what is smaller than that does not show")
+    y, way = view.columns.get(channel), view.direction[view.ok]
+    there, back = sorted((int(np.sum(way > 0)), int(np.sum(way < 0))))
+    one_sign = y is not None and there > BOTH_WAYS * back and np.ptp(np.sign(y[view.ok])) == 0
+    brakes = s.problem.named(s.after).get("coulomb")
+    if one_sign and brakes is not None and brakes.value <= LITTLE * float(np.std(s.problem.y)):
+        out.append(f"{channel} never changes its sign, though the drive goes both ways: is it a size?")
+    return out
 
 
 def turned(view: View, problem: Problem) -> list[str]:

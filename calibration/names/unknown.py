@@ -43,7 +43,7 @@ def domains(s: Scene) -> list[tuple[str, Array]]:
         out.append(("reversal", np.sign(since) * np.log1p(np.abs(since) / unit)))
     if s.temperature is not None:
         out.append(("temperature", s.temperature[at]))
-    if s.force and s.view.dynamic and v.response.channel != "current":
+    if s.force and s.view.dynamic and v.response.channel not in ("current", "force"):
         out.append(("current", _declared_force(s)))
     efforts = [c for c in ("effort", "current", "force") if c in v.columns and not s.force]
     return out + [("current", s.at(v.columns[c])) for c in efforts]

@@ -71,3 +71,19 @@ def test_a_loop_with_a_moving_reference_is_told_where_forces_say_less(tmp_path: 
     assert (told is None) == forces
     if told:
         assert [float(x) for x in told.groups()] == [pytest.approx(80, rel=0.05), pytest.approx(5, rel=0.2)]
+
+
+def test_an_effort_without_its_sign_is_asked_for_it(tmp_path: Path) -> None:
+    """A sensor that tells a size only; a weight that is larger than all friction has one sign, too."""
+    t, x, u = motion()
+    assert "is it a size?" in str(answer(tmp_path, FORCE, (t, x, np.abs(u))))
+    assert "is it a size?" not in str(answer(tmp_path, FORCE, (t, x, u + 40.0)))
+
+
+@pytest.mark.parametrize("digits", [3, 5, 9])
+def test_a_floor_far_above_what_is_left_is_told(tmp_path: Path, digits: int) -> None:
+    t, x, u = motion()
+    data = answer(tmp_path, FORCE, (t, np.round(x, digits), u))
+    error = data["error"]["torque"]
+    far = not data["effects"] and error["floor"] > 2.0 * error["after"]
+    assert ("times what is left: what is smaller" in str(data)) == far
