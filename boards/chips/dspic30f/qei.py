@@ -26,7 +26,7 @@ class QeiModule:
             a, b, index = of_a.sample(a), of_b.sample(b), of_index.sample(index)
         if registers.field("SWPAB"):
             a, b = b, a
-        if mode not in tuple(Qeim) or mode == Qeim.OFF:
+        if mode not in tuple(Qeim):
             return
         step = self._decoder.edge(a, b, x2=mode in _X2)
         if step:

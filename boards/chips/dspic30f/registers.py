@@ -29,9 +29,8 @@ CONVERSION_TAD = 12
 
 
 class Qeim(IntEnum):
-    """QEIM of the dsPIC."""
+    """QEIM of the dsPIC; any other value is off, or a timer."""
 
-    OFF = 0b000
     X2_INDEX = 0b100
     X2_MATCH = 0b101
     X4_INDEX = 0b110

@@ -12,9 +12,8 @@ IC2QEIF, IC3DRIF = 0x04, 0x08
 
 
 class Mode(IntEnum):
-    """QEIM."""
+    """QEIM; any other value is off."""
 
-    OFF = 0b000
     X2_INDEX = 0b001
     X2_MATCH = 0b010
     X4_INDEX = 0b101
@@ -44,7 +43,7 @@ class Qei4431:
     def sample(self, a: int, b: int, index: int = 0) -> None:
         """New levels of QEA, QEB and INDX."""
         mode = self.mode
-        if mode not in tuple(Mode) or mode == Mode.OFF:
+        if mode not in tuple(Mode):
             return
         step = self._decoder.edge(a, b, x2=mode in X2)
         if step is None:

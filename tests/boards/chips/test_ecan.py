@@ -176,6 +176,41 @@ def test_the_second_buffer_overflows_by_its_own_flag() -> None:
     assert (bench.can.get("COMSTAT"), bench.can.get("RXB1CON") & 0xE0) == (0x40, 0xE0)
     bench.can.set("COMSTAT", 0x80)
     assert bench.can.get("COMSTAT") == 0
+    bench.can.set("RXB1CON", 0x60)
+    assert bench.can.get("RXB1CON") & 0x80 == 0
+
+
+def test_after_a_reset_nothing_is_enabled_and_nothing_has_come() -> None:
+    can = Bench().can
+    told = {name: can.get(name) for name in OWN}
+    assert told == {"CANCON": 0x80, "CANSTAT": CONFIG} | dict.fromkeys(OWN[2:], 0)
+
+
+def test_firmware_writes_the_bits_there_are() -> None:
+    can = Bench().can
+    for name, value, told in (
+        ("CANCON", 0x9F, 0x90), ("PIR3", 0x1FF, 0xFF), ("PIE3", 0x108, 0x08), ("PIE3", 0xFF, 0xFF),
+    ):  # fmt: skip
+        can.set(name, value)
+        assert can.get(name) == told
+    for value, left in ((0xC0, 0xC0), (0x80, 0x80), (0x40, 0x40), (0x3F, 0)):
+        can.write(0x2D, 0xC0)  # EFLG of the stand-alone chip: both have overflowed
+        can.set("COMSTAT", value)
+        assert can.get("COMSTAT") == left
+
+
+def test_an_interrupt_that_is_enabled_late_comes_at_once() -> None:
+    bench = Bench().start()
+    bench.partner_sends(Frame(0x345, b"\x01"))
+    assert (bench.can.get("PIR3"), bench.requests) == (0x01, [])
+    bench.can.set("PIE3", 0x01)
+    assert bench.requests == [True]
+
+
+BEYOND = (
+    "TXB3CON", "TXB3SIDH", "TXB3D0", "TXB0D8", "RXB2SIDH", "RXB2D0", "RXB0D8", "RXM2SIDH", "RXF6SIDH",
+)  # fmt: skip
+"""Three buffers to send from, two to receive into, of eight bytes; two masks, six filters."""
 
 
 def test_registers_it_has_not_got_are_refused() -> None:
@@ -183,7 +218,7 @@ def test_registers_it_has_not_got_are_refused() -> None:
     for name in (*LIKE, *OWN):
         assert 0 <= bench.can.get(name) <= 0xFF
         bench.can.set(name, 0)
-    for name in ("ECANCON", "CANCTRL", "RXF15SIDH"):
+    for name in ("ECANCON", "CANCTRL", "RXF15SIDH", *BEYOND):
         with pytest.raises(EcanError, match="no register"):
             bench.can.get(name)
         with pytest.raises(EcanError, match="no register"):

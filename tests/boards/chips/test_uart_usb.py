@@ -155,6 +155,7 @@ def test_the_report_descriptor_says_64_bytes_each_way() -> None:
     while at < len(usb.REPORT):  # HID 1.11, 6.2.2.2: short items
         prefix = usb.REPORT[at]
         data = usb.REPORT[at + 1 : at + 1 + (0, 1, 2, 4)[prefix & 3]]
+        assert len(data) == (0, 1, 2, 4)[prefix & 3]
         value = int.from_bytes(data, "little")
         if prefix & 0xFC == 0x74:
             size = value
@@ -164,7 +165,7 @@ def test_the_report_descriptor_says_64_bytes_each_way() -> None:
             bits[prefix & 0xFC] = size * count
         at += 1 + len(data)
         items.append((prefix & 0xFC, value))
-    assert bits == {0x80: 512, 0x90: 512} and at == len(usb.REPORT)
+    assert bits == {0x80: 512, 0x90: 512}
     # vendor's page and usage, an application; bytes; a variable each way
     head = [(0x04, 0xFF00), (0x08, 1), (0xA0, 1), (0x14, 0), (0x24, 255), (0x74, 8), (0x94, 64)]
     assert items == [*head, (0x08, 1), (0x80, 2), (0x08, 1), (0x90, 2), (0xC0, 0)]
