@@ -97,7 +97,7 @@ class Own:
             found = self.method(t_ns, *arguments)
             if found is not None:
                 pack_reply(board.device_type, 0, *found)
-        except (Exception, SystemExit) as error:
+        except (Exception, SystemExit, GeneratorExit) as error:
             raise board_error(type(board), board.name, t_ns, error) from None
         return found
 
@@ -178,6 +178,19 @@ class DeclaredBoard(PeriodicBoard):
         if not (ticks - 1) % self._heartbeat_ticks:
             self.heartbeat(end)
 
+    def heartbeat(self, t_ns: int) -> None:
+        """As any board's; raises BoardError where `state` says nothing that one can hold."""
+        try:
+            super().heartbeat(t_ns)
+        except (Exception, SystemExit) as error:
+            raise board_error(type(self), self.name, t_ns, error, f"state cannot be sent: {error}") from None
+
+    def _ping(self, t_ns: int) -> Answer:
+        try:
+            return super()._ping(t_ns)
+        except (Exception, SystemExit) as error:
+            raise board_error(type(self), self.name, t_ns, error, f"health cannot be sent: {error}") from None
+
     def _frames(self, t_ns: int) -> list[tuple[int, bytes]]:
         """Identifiers and data of what is due now; raises BoardError."""
         passed_ns = self.ticks * self.period_ns
@@ -189,7 +202,7 @@ class DeclaredBoard(PeriodicBoard):
                 for codec in self.codecs
                 if not passed_ns % codec.period_ns
             ]
-        except (Exception, SystemExit) as error:
+        except (Exception, SystemExit, GeneratorExit) as error:
             raise board_error(type(self), self.name, t_ns, error, _unusable(values)) from None
 
 
