@@ -25,7 +25,8 @@ def read_mf4(path: Path, wanted: list[str]) -> list[dict[str, Array]]:
     from asammdf import MDF
     from asammdf.blocks.mdf_v4 import MDF4
 
-    MDF4.__del__ = _close  # its own, of a file that is cut, ends in a traceback on the screen
+    # its own, of a file that is cut, ends in a traceback on the screen
+    MDF4.__del__ = _close  # type: ignore[method-assign]
     try:
         with MDF(path) as file:
             have = sorted(name for name in file.channels_db if name not in ("t", TIME))
