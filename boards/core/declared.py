@@ -13,7 +13,7 @@ from typing import Any, ClassVar, NamedTuple
 from mypy_extensions import mypyc_attr
 
 from boards.core.board import Board
-from boards.core.commands import Command, Handler, Parameter
+from boards.core.commands import Answer, Command, Handler, Parameter
 from boards.core.interrupts import Source
 from boards.core.packets import PacketLine
 from boards.core.periodic import PeriodicBoard
@@ -147,7 +147,7 @@ class DeclaredBoard(PeriodicBoard):
     def _serve(self, t_ns: int) -> None:
         try:  # a command's method is the author's, and so is its answer
             super()._serve(t_ns)
-        except (Exception, SystemExit) as error:
+        except (Exception, SystemExit, GeneratorExit) as error:
             raise board_error(type(self), self.name, t_ns, error) from None
 
     def routine(self, t_ns: int) -> None:
@@ -163,6 +163,19 @@ class DeclaredBoard(PeriodicBoard):
         if not (ticks - 1) % self._heartbeat_ticks:
             self.heartbeat(end)
 
+    def heartbeat(self, t_ns: int) -> None:
+        """As any board's; raises BoardError where `state` says nothing that one can hold."""
+        try:
+            super().heartbeat(t_ns)
+        except (Exception, SystemExit) as error:
+            raise board_error(type(self), self.name, t_ns, error, f"state cannot be sent: {error}") from None
+
+    def _ping(self, t_ns: int) -> Answer:
+        try:
+            return super()._ping(t_ns)
+        except (Exception, SystemExit) as error:
+            raise board_error(type(self), self.name, t_ns, error, f"health cannot be sent: {error}") from None
+
     def _frames(self, t_ns: int) -> list[tuple[int, bytes]]:
         """Identifiers and data of what is due now; raises BoardError."""
         passed_ns = self.ticks * self.period_ns
@@ -174,7 +187,7 @@ class DeclaredBoard(PeriodicBoard):
                 for codec in self.codecs
                 if not passed_ns % codec.period_ns
             ]
-        except (Exception, SystemExit) as error:
+        except (Exception, SystemExit, GeneratorExit) as error:
             raise board_error(type(self), self.name, t_ns, error, _unusable(values)) from None
 
 

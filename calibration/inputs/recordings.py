@@ -5,8 +5,8 @@ time; rows are those of the first column, `time` aside.
 """
 
 import json
+from contextlib import suppress
 from pathlib import Path
-from struct import error as StructError
 from typing import Any, Final
 
 import numpy as np
@@ -23,7 +23,10 @@ Columns = dict[str, tuple[Array, Array]]
 def read_mf4(path: Path, wanted: list[str]) -> list[dict[str, Array]]:
     """The wanted channels of an MDF file by their names: one run."""
     from asammdf import MDF
+    from asammdf.blocks.mdf_v4 import MDF4
 
+    # its own, of a file that is cut, ends in a traceback on the screen
+    MDF4.__del__ = _close  # type: ignore[method-assign]
     try:
         with MDF(path) as file:
             have = sorted(name for name in file.channels_db if name not in ("t", TIME))
@@ -35,9 +38,13 @@ def read_mf4(path: Path, wanted: list[str]) -> list[dict[str, Array]]:
     return [_joined(path, wanted, columns, have)]
 
 
+def _close(file: Any) -> None:
+    with suppress(Exception):
+        file.close()
+
+
 def read_mcap(path: Path, wanted: list[str]) -> list[dict[str, Array]]:
     """The wanted fields, each as `/topic.field` (deeper: `/topic.field.inner`): one run."""
-    from mcap.exceptions import McapError
     from mcap.reader import make_reader
 
     begin_ns: int | None = None  # seconds since 1970 leave a double no more than a quarter of a microsecond
@@ -58,7 +65,7 @@ def read_mcap(path: Path, wanted: list[str]) -> list[dict[str, Array]]:
                     value = _inside(content, name[len(channel.topic) + 1 :].split("."))
                     if value is not None:
                         rows[name].append(((message.log_time - begin_ns) * 1e-9, value))
-    except (McapError, StructError, ValueError, OSError):
+    except Exception:  # and what the packers of its chunks raise
         raise CalibrationInputError(path, "is no MCAP file that can be read; record it again") from None
     arrays = {name: np.array(found, dtype=float) for name, found in rows.items() if found}
     columns = {name: (both[:, 0], both[:, 1]) for name, both in arrays.items()}

@@ -93,4 +93,9 @@ def words(identifier: int, data: bytes) -> str:
     except Exception:  # whatever anybody put on the bus is shown as it is
         return "not in the protocol"
     pairs = said.items() if isinstance(said, dict) else ()
-    return ", ".join(f"{name} {value}" for name, value in pairs if name != "Device")
+    return ", ".join(f"{name} {_short(value)}" for name, value in pairs if name != "Device")
+
+
+def _short(value: object) -> object:
+    """A scaled signal without the digits that its binary form adds."""
+    return f"{value:.10g}" if isinstance(value, float) else value

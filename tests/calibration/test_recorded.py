@@ -12,6 +12,7 @@ from scipy.io import savemat
 
 from calibration.command import calibrate
 from calibration.errors import CalibrationInputError
+from calibration.inputs.recordings import read_mcap
 from tests.calibration.test_rotary import RIG, night
 
 BEGIN_NS = 1_770_732_000_000_000_000
@@ -90,3 +91,15 @@ def test_a_recording_cut_short_is_one_line_without_a_librarys_words(
     said = str(caught.value)
     assert said.startswith(str(file)) and "\n" not in said
     assert re.search(r"; (export|record|save) it", said) or said.endswith("is empty"), said
+
+
+def test_an_mcap_whose_chunk_is_damaged_is_one_line(tmp_path: Path) -> None:
+    file = tmp_path / "log.mcap"
+    t = 0.01 * np.arange(300.0)
+    write_mcap(file, {"time": t, "x": t, "u": t})
+    data = bytearray(file.read_bytes())
+    at = data.index(b"zstd") + 20
+    data[at : at + 40] = bytes(40)
+    file.write_bytes(data)
+    with pytest.raises(CalibrationInputError, match="is no MCAP file that can be read"):
+        read_mcap(file, ["time", "/drive.x"])

@@ -182,15 +182,32 @@ def test_what_is_saved_outlives_a_reset_until_the_defaults_come_back(bench: Benc
     assert node.sdo["kp_q12"].raw == first
 
 
-def test_blocks_are_refused_or_become_segments(bench: Bench) -> None:
+def test_an_object_comes_in_blocks_with_its_crc(bench: Bench) -> None:
+    sdo = bench.master[RA].sdo
+    with sdo.open(0x1008, 0, "rb", block_transfer=True, buffering=0) as stream:
+        assert stream.read() == b"schmidt AXIS"
+        assert stream.crc_supported
+        assert stream.size == 12
+    with sdo.open(0x1008, 0, "rb") as stream:
+        assert stream.read() == b"schmidt AXIS"
     answers = []
-    for request in (b"\xa0\x08\x10\x00\x7f", b"\xc2\x08\x10\x00\x04"):
+    for request in (b"\xa3", b"\xa0\x08\x10\x00\x00", b"\xa0\x08\x10\x00\x80", b"\xa4\x08\x10\x00\x01"):
         bench.heard.clear()
         bench.master.send_message(0x600 + RA, request.ljust(8, b"\0"))
         answers.append(heard(bench, 0x580 + RA)[-1])
-    upload, download = answers
-    assert upload[:4] == b"\x41\x08\x10\x00" and int.from_bytes(upload[4:], "little") == 12
-    assert download[0] == 0x80 and int.from_bytes(download[4:], "little") == 0x05040001
+    assert [int.from_bytes(each[4:], "little") for each in answers] == [
+        0x05040001,
+        0x05040002,
+        0x05040002,
+        12,
+    ]
+    for request, blocks in ((b"\xa3", 1), (b"\xa2\x00\x01", 1), (b"\xa2\x01\x7f", 1), (b"\xa2\x01\x7f", 1)):
+        bench.heard.clear()
+        bench.master.send_message(0x600 + RA, request.ljust(8, b"\0"))
+        assert len(heard(bench, 0x580 + RA)) == blocks
+        answers.append(heard(bench, 0x580 + RA)[-1])
+    # one segment, again as it was not acknowledged, the last, the end with two bytes unused
+    assert [each[0] for each in answers[4:]] == [0x01, 0x01, 0x81, 0xC1 | 2 << 2]
 
 
 def mapped_objects(file: Path) -> dict[str, bool]:

@@ -69,6 +69,11 @@ def test_nodes_load_and_frames_are_those_of_the_wire() -> None:
         rig.host.close()
 
 
+def test_a_scaled_signal_has_the_digits_of_its_scale() -> None:
+    """995 hundredths of a degree, which is 9.950000000000001 in binary."""
+    assert "Temperature 9.95," in words(0x274, bytes.fromhex("7400e303f401c600"))
+
+
 @pytest.mark.parametrize(
     ("tec", "said"), [(0, "active"), (127, "active"), (128, "passive"), (255, "passive")]
 )

@@ -21,8 +21,8 @@ from tests.host.console.conftest import PATHS, SHOTS, Consoles, choose, opened, 
 
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(1800)]
 SIZES = {"desk": (1400, 1000), "phone": (390, 844)}
-NARROW = (1408, 360)
-"""Pages whose cards are narrowest: four columns of 21 rem side by side, and a small phone."""
+NARROW = (1408, 1024, 360)
+"""Pages whose cards are narrowest: four columns of 21 rem side by side, a tablet, a small phone."""
 REDRAW_MS = 1200
 """Plots are drawn anew once a second."""
 FIT_MS = 300

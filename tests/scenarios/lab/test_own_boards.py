@@ -6,7 +6,7 @@ import pytest
 
 from boards.core.declared import BoardError
 from bus.can import Frame
-from bus.protocol import COMMAND_BASE
+from bus.protocol import COMMAND_BASE, Opcode, pack_command
 from scenarios.lab.network import Network
 from scenarios.lab.prepare import prepare
 from scenarios.lab.wiring import wire
@@ -80,6 +80,7 @@ def made(file: Path) -> Network:
         ("raise KeyError('no')", "KeyError: 'no'"),
         ("sys.exit(3)", "SystemExit: 3"),
         ("sys.exit()", "SystemExit"),
+        ("raise GeneratorExit", "GeneratorExit"),
     ],
 )
 def test_a_board_that_fails_is_named_with_file_and_time(measure: str, words: str, tmp_path: Path) -> None:
@@ -101,6 +102,15 @@ def test_a_command_that_fails_is_named_too(heat: str, tmp_path: Path) -> None:
     pc.send(Frame(COMMAND_BASE + 0x76, bytes((0x76, 80, 5, 0, 0, 0, 0, 0))), 0)
     with pytest.raises(BoardError, match=r"bad.py: board BAD fails at 0\.0\d+ s: "):
         network.run_until(1_000_000_000)
+
+
+@pytest.mark.parametrize("method", ["state", "health"])
+def test_what_no_frame_can_hold_is_named_too(method: str, tmp_path: Path) -> None:
+    network = made(write(tmp_path, heat=f"return None\n\n    def {method}(self):\n        return 'well'"))
+    pc = network.wire.attach("pc")
+    pc.send(Frame(COMMAND_BASE + 0x76, pack_command(0x76, Opcode.PING)), 0)
+    with pytest.raises(BoardError, match=rf"bad.py: board BAD fails at 0\.\d+ s: {method} cannot be sent: "):
+        network.run_until(1_500_000_000)
 
 
 def test_it_is_one_line_of_the_command(tmp_path: Path, schmidt: Command) -> None:
