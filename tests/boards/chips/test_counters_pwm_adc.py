@@ -203,9 +203,11 @@ def test_pic18f4431_matches_turns_and_loses() -> None:
     qei.pir3 = 0
     walk(qei, 10, 9)
     assert (qei.poscnt, qei.pir3) == (9, MATCHED | TURNED)
-    assert qei.qeicon == X4_MATCH
-    qei.sample(*levels(11))
-    assert (qei.qeicon, qei.poscnt) == (X4_MATCH | QERR, 9)
+    qei.pir3 = 0
+    walk(qei, 9, 8)
+    assert (qei.poscnt, qei.pir3, qei.qeicon) == (8, 0, X4_MATCH)  # down still, which is no news
+    qei.sample(*levels(10))
+    assert (qei.qeicon, qei.poscnt) == (X4_MATCH | QERR, 8)
 
 
 def test_pic18f4431_index_resets_forward_at_its_rise_and_reverse_at_its_fall() -> None:
