@@ -102,7 +102,7 @@ def dump(model: PlantModel, path: str | Path) -> None:
 
 
 def _inside(part: Any) -> dict[str, Any]:
-    """What a part holds, by the words of a path."""
+    """Return the children of a part by the words of a path."""
     if isinstance(part, EffectModel):
         return dict(part.parameters)
     if isinstance(part, tuple):

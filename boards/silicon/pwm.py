@@ -5,7 +5,7 @@ Edge aligned, duty = PDC / (2 (PTPER + 1)): bit 0 of PDC is half an instruction 
 A new PDC is taken at the end of the running period.
 
 `write` is what firmware does once a control tick. With `write_spread` the PWM interrupt changes the registers
-every period: it adds the fraction of a step to a 16-bit accumulator and loads the whole steps plus the carry.
+every period. It adds the fraction of a step to a 16-bit accumulator and loads the whole steps plus the carry.
 """
 
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""The protocol's page and `final.dbc`, from the DBC files; `python -m docs.generate` writes them."""
+"""The protocol's page, from the DBC files; `python -m docs.generate` writes it, and `final.dbc`."""
 
 from collections.abc import Iterator
 from dataclasses import astuple
@@ -71,12 +71,6 @@ A sync may come by chance among the samples: after a wrong CRC, search on one by
 
 def _everything() -> Any:
     return documented(DEVICES)
-
-
-def final_dbc() -> str:
-    """The text of `final.dbc`."""
-    text: str = _everything().as_dbc_string(sort_signals=None)
-    return text.replace("\r\n", "\n")
 
 
 def _family(name: str) -> str:

@@ -4,6 +4,7 @@ import sys
 from pathlib import Path
 
 from bus.protocol import page as protocol
+from bus.protocol.nodes import DEVICES, documented
 from docs.generate import api, commands, effects, fields, language, parameters
 from scenarios.language.validate import SCHEMA_FILE
 
@@ -42,7 +43,8 @@ def main(arguments: list[str]) -> int:
     for file, text in changed.items():
         file.write_text(text, encoding="utf-8")
     # versions of cantools differ in the text: tests/bus/protocol/test_nodes.py compares what it says
-    protocol.DBC_PATH.write_text(protocol.final_dbc(), encoding="utf-8", newline="\n")
+    dbc: str = documented(DEVICES).as_dbc_string(sort_signals=None)
+    protocol.DBC_PATH.write_text(dbc.replace("\r\n", "\n"), encoding="utf-8", newline="\n")
     return 0
 
 
