@@ -150,22 +150,20 @@ class Session:
         """For what may be read from any thread."""
         return self.desk.telescope
 
-    async def place(self) -> Place:
-        """Apparent place of date that the telescope points at."""
-        return self.telescope.observatory.apparent(*await self.desk.encoders())
-
     def target(self) -> Place:
         """What `:Sr` and `:Sd` have set; raises ValueError before both were."""
         if self.target_ra_rad is None or self.target_dec_rad is None:
             raise ValueError("no target has been set")
         return Place(self.target_ra_rad, self.target_dec_rad)
 
-    async def act(self, act: Callable[[Telescope], object]) -> None:
-        """A command that has no answer: a refusal goes into the log instead."""
+    async def act(self, act: Callable[[Telescope], object]) -> Refused | None:
+        """A command; its refusal goes into the log, too, as many have no answer."""
         try:
             await self.desk.do(act)
         except Refused as refusal:
             self.say(str(refusal))
+            return refusal
+        return None
 
     def say(self, text: str) -> None:
         """A line in the error log."""

@@ -17,20 +17,17 @@ def _down(h: Array, d: Array, latitude: float) -> tuple[Array, Array]:
     return cosine * np.sin(h), cosine * np.cos(h) * np.sin(d) - sine * np.cos(d)
 
 
-def _height(h: Array, d: Array, latitude: float) -> Array:
-    """Sine of the altitude, at least that of 5 degrees: a formula with tan z ends there. ASSUMPTION."""
+def _sine(h: Array, d: Array, latitude: float) -> Array:
+    """Of the altitude."""
     sine: Array = np.sin(latitude) * np.sin(d) + np.cos(latitude) * np.cos(d) * np.cos(h)
-    return np.maximum(sine, np.sin(np.radians(5.0)))
+    return sine
 
 
 def _refracted(h: Array, d: Array, latitude: float) -> tuple[Array, Array]:
     east, north = _down(h, d, latitude)
-    height = _height(h, d, latitude)
+    # at least the sine of 5 degrees: a formula with tan z ends there. ASSUMPTION
+    height = np.maximum(_sine(h, d, latitude), np.sin(np.radians(5.0)))
     return east / height, north / height
-
-
-def _sagging(h: Array, d: Array, latitude: float) -> tuple[Array, Array]:
-    return -(np.cos(latitude) * np.cos(h) * np.cos(d) + np.sin(latitude) * np.sin(d)), 0 * h
 
 
 _TABLE: dict[str, tuple[str, Formula]] = {
@@ -42,7 +39,7 @@ _TABLE: dict[str, tuple[str, Formula]] = {
     "ME": ("polar axis off in altitude", lambda h, d, _: (np.sin(h) * np.sin(d), np.cos(h))),
     "TF": ("tube bends, sin z", _down),
     "TX": ("refraction left over, tan z", _refracted),
-    "DAF": ("declination axis bends", _sagging),
+    "DAF": ("declination axis bends", lambda h, d, latitude: (-_sine(h, d, latitude), 0 * h)),
     "FO": ("fork bends", lambda h, d, _: (0 * h, np.cos(h))),
     "HCES": ("hour angle encoder off its centre, sine", lambda h, d, _: (np.sin(h) * np.cos(d), 0 * h)),
     "HCEC": ("hour angle encoder off its centre, cosine", lambda h, d, _: (np.cos(h) * np.cos(d), 0 * h)),
