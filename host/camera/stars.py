@@ -44,7 +44,7 @@ class Stars(NamedTuple):
 
     def near(self, right_ascension: float, declination: float, radius: float) -> "Stars":
         """Those within a radius, rad."""
-        away = separation(self.right_ascension, self.declination, right_ascension, declination)
+        away = erfa.seps(self.right_ascension, self.declination, right_ascension, declination)
         return self.where(away <= radius)
 
     def where(self, kept: npt.NDArray[np.bool_]) -> "Stars":
@@ -57,12 +57,6 @@ class Sky(Protocol):
 
     def near(self, right_ascension: float, declination: float, radius: float) -> Stars:
         """Those within a radius, all rad."""
-
-
-def separation(ra: Array, dec: Array, ra0: float, dec0: float) -> Array:
-    """Angles between places, rad (haversine)."""
-    half = np.sin((dec - dec0) / 2) ** 2 + np.cos(dec) * math.cos(dec0) * np.sin((ra - ra0) / 2) ** 2
-    return np.asarray(2 * np.arcsin(np.sqrt(np.clip(half, 0, 1))))
 
 
 def stars(ra: npt.ArrayLike, dec: npt.ArrayLike, magnitude: npt.ArrayLike) -> Stars:
@@ -101,7 +95,7 @@ class SyntheticSky:
                 continue
             count = max(1, round(2 * math.pi * math.cos(middle) / _CELL))
             ra = (np.arange(count) + 0.5) * 2 * math.pi / count
-            away = separation(ra, np.full(count, middle), right_ascension, declination)
+            away = erfa.seps(ra, middle, right_ascension, declination)
             found += [self._cell(band, int(k), count) for k in np.flatnonzero(away <= reach)]
         joined = Stars(*map(np.concatenate, zip(*found, strict=True)))
         return joined.near(right_ascension, declination, radius)

@@ -19,9 +19,8 @@ from host.sky.pointfit import TooFewStars, fit
 from host.sky.pointmodel import PointingModel
 from host.sky.pointstars import Sighting
 from host.sky.tracks import DriveRate, GroundTrack, SkyTrack, StarTrack
-from host.sky.visibility import BelowHorizon, Unreachable, check_reachable
+from host.sky.visibility import BelowHorizon, Observatory, Unreachable, check_reachable
 from host.telescope.jobs import Activity, Job, Reason, Refused
-from host.telescope.observatory import Observatory
 
 _FOREVER_S = 1e6
 _REST_COUNTS = 2

@@ -9,8 +9,8 @@ from rich.table import Table
 
 from host.logs.files import write_file
 from host.sky.pointfind import Answer, Lack, find
+from host.sky.pointmodel import GEOMETRY, TERMS, TEXTS
 from host.sky.pointread import read
-from host.sky.pointterms import GEOMETRY, TERMS, TEXTS
 from scenarios.run.report.pointing_run import residuals
 
 _WIDE = 120

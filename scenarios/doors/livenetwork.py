@@ -169,13 +169,13 @@ class LiveNetwork:
         self.network.debug[name.decode()].write(self.now_ns, text)
 
     def start_fault(self, name: str, **arguments: Any) -> int:
-        """Start a fault now (`scenarios.lab.faults`); returns its number. Raises FaultError."""
+        """Start a fault now (`scenarios.lab.faults`); returns its number. Raises ValueError."""
         values = self.faults.check(name, arguments)
         self.entry.enter(FAULT, f"start {name} {json.dumps(values)}".encode())
         return self.faults.running[-1].number
 
     def clear_fault(self, number: int) -> None:
-        """End a fault now; raises FaultError when it is not on."""
+        """End a fault now; raises ValueError when it is not on."""
         if all(each.number != number for each in self.faults.running):
             self.faults.clear(number)  # says what is on
         self.entry.enter(FAULT, f"clear {number}".encode())
