@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import astuple, replace
 from pathlib import Path
-from typing import Final, NamedTuple, Protocol
+from typing import Final, NamedTuple
 
 import erfa
 import numpy as np
@@ -50,13 +50,6 @@ class Stars(NamedTuple):
     def where(self, kept: npt.NDArray[np.bool_]) -> "Stars":
         """Some of them."""
         return Stars(*(column[kept] for column in self))
-
-
-class Sky(Protocol):
-    """All stars there are."""
-
-    def near(self, right_ascension: float, declination: float, radius: float) -> Stars:
-        """Those within a radius, all rad."""
 
 
 def stars(ra: npt.ArrayLike, dec: npt.ArrayLike, magnitude: npt.ArrayLike) -> Stars:
@@ -155,3 +148,7 @@ def turning(look: Look, step_rad: float, site: Site, clock: Clock) -> npt.NDArra
         east = math.remainder(ra - ra0, 2 * math.pi) * math.cos(dec0)
         columns.append((math.degrees(east) / step_rad, math.degrees(dec - dec0) / step_rad))
     return np.array(columns).T
+
+
+Sky = Stars | SyntheticSky
+"""All stars there are, in a radius about a place."""
