@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import click
 
 from scenarios.commands import calibrating, describing, live, running
-from scenarios.commands.parts import INTERRUPTED, UNUSABLE, advice, fail
+from scenarios.options import INTERRUPTED, UNUSABLE, advice, fail
 
 Section = tuple[tuple[click.Command, str], ...]
 """Commands with an example each."""

@@ -13,8 +13,8 @@ from host.alpaca.requests import (
     Parameters,
     within,
 )
-from host.sky.apparent import Place, star_of_apparent
 from host.sky.catalogue import Star
+from host.sky.observed import Place, star_of_apparent
 from host.telescope import Job, Telescope
 from host.telescope.paddle import FASTEST_ARCSEC_S
 

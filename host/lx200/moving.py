@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 from bus.protocol import SpeedClass
 from host.lx200.session import FREQUENCIES, Handler, Session
-from host.sky.apparent import star_of_apparent
 from host.sky.catalogue import Star
+from host.sky.observed import star_of_apparent
 from host.telescope import DriveRate, Reason, Telescope
 
 _KEYS = {"R" + letter: speed for letter, speed in zip(

@@ -5,8 +5,7 @@ from collections.abc import Callable
 
 from host.lx200 import angles
 from host.lx200.session import Handler, Session
-from host.sky.apparent import Place, sidereal_time_rad
-from host.sky.observed import Observed
+from host.sky.observed import Observed, Place, sidereal_time_rad
 
 Encoders = tuple[int, int, float]
 _SLEWING = "\x7f"

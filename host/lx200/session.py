@@ -10,8 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from bus.protocol import SpeedClass
-from host.sky.apparent import Place
-from host.sky.observed import Clock
+from host.sky.observed import Clock, Place
 from host.telescope import AsyncDesk, DriveRate, Refused, Snapshot, Telescope
 
 FREQUENCIES = {DriveRate.SIDEREAL: 60.1, DriveRate.SOLAR: 60.0, DriveRate.LUNAR: 57.9, DriveRate.KING: 60.1}

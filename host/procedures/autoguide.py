@@ -9,9 +9,9 @@ from bus.protocol import Opcode
 from bus.protocol.scales import rate_q16
 from bus.units import ARCSEC_PER_RAD
 from host.client import TICK_NS, Client, ClientError, Procedure
+from host.procedures.manual import BOARDS
 from host.procedures.pointing import Pointing
 from host.procedures.pointing_run import Eye
-from host.procedures.power import AXES
 from host.sky.tracks import GUIDE_ARCSEC_S, RAMP_S, Pulse, SkyTrack
 from host.sky.visibility import Standpoint
 
@@ -73,7 +73,7 @@ def autoguide(
             next(each)
         yield
     for axis, opcode in enumerate(opcodes):  # a pulse may be under way
-        yield from client.ask(AXES[axis], opcode, rate_q16(followed.rates(client.now_s)[axis]))
+        yield from client.ask(BOARDS[axis], opcode, rate_q16(followed.rates(client.now_s)[axis]))
     pointing.tracking = False
 
 
@@ -88,7 +88,7 @@ def _driven(client: Client, axis: int, opcode: Opcode, track: SkyTrack) -> Proce
             yield
         else:
             sent = rate
-            yield from client.ask(AXES[axis], opcode, rate)
+            yield from client.ask(BOARDS[axis], opcode, rate)
 
 
 def _exposures(

@@ -7,10 +7,9 @@ from typing import Protocol
 import numpy as np
 
 from host.sky.angles import format_degrees
-from host.sky.apparent import Place, apparent_of_observed, horizontal
 from host.sky.catalogue import Star
 from host.sky.mount import Mount
-from host.sky.observed import Clock, Observed, observe_many
+from host.sky.observed import Clock, Observed, Place, apparent_of_observed, horizontal, observe_many
 from host.sky.pointstars import Sighting
 from host.sky.site import Site
 

@@ -9,8 +9,20 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from scenarios.commands.parts import INTERRUPTED, UNUSABLE, fail, need
-from scenarios.options import PATH, SECONDS, SEED, SPEED, Number, filled, muting, network
+from scenarios.options import (
+    INTERRUPTED,
+    PATH,
+    SECONDS,
+    SEED,
+    SPEED,
+    UNUSABLE,
+    Number,
+    fail,
+    filled,
+    muting,
+    need,
+    network,
+)
 from scenarios.studies.options import ObjectiveOptions, PaperOptions
 
 if TYPE_CHECKING:

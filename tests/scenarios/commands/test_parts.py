@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from scenarios.commands.parts import advice, need
+from scenarios.options import advice, need
 from tests.scenarios.commands.base import closure
 
 ROOT = Path(__file__).parents[3]
