@@ -1,5 +1,4 @@
-"""What a command can be told, as fields of one record that click options are made of; what it needs; how it
-ends when it does not end well. Light: the command line starts at once."""
+"""Options of commands as fields of records, extras that they need, and their ends that are errors."""
 
 import re
 import sys
