@@ -5,8 +5,8 @@ lock when a tick is due. Nothing but these values crosses; the emulator's side i
 `piped_host`.Beside the records below there are tuples of a word and what belongs to it.
 
 From the host come `report` (64 bytes for the gateway), `said` (a line for the user) and `opened` (doors,
-error). A `wish` has a number and a command of the control plane. To the host go `done` (the wish's number, its
-answer, whether it was refused) and `close`: hang up, write the logs, answer `Taken` and end.
+error). A `wish` has a number and a command of the control plane. To the host go `done` (the wish's number,
+its answer, whether it was refused) and `close`: hang up, write the logs, answer `Taken` and end.
 """
 
 from pathlib import Path
