@@ -16,6 +16,7 @@ from starlette.responses import PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 COOKIE = "schmidt-token"
+_HERE = ("127.0.0.1", "::1", "localhost")
 HOSTS_VARIABLE = "SCHMIDT_HOSTS"
 """Names by commas that browsers may call this machine by, beside its own, and whose pages may talk to it."""
 
@@ -39,7 +40,7 @@ class Guard:
             asked = HTTPConnection(scope)
             if not self._addressed(asked):
                 why = f"foreign Host or Origin; {HOSTS_VARIABLE}=NAME,NAME allows more\n"
-            elif self._token is not None and not _local(asked):
+            elif self._token is not None and (asked.client is None or asked.client.host not in _HERE):
                 said = asked.query_params.get("token")
                 word = asked.cookies.get(COOKIE, "") if said is None else said
                 if not hmac.compare_digest(word.encode(), self._token.encode()):
@@ -69,10 +70,6 @@ class Guard:
         except ValueError:
             return False
         return bool(where) and (where == host.lower() or _name(where) in self._more)
-
-
-def _local(asked: HTTPConnection) -> bool:
-    return asked.client is not None and asked.client.host in ("127.0.0.1", "::1", "localhost")
 
 
 def _with_cookie(send: Send, word: str) -> Send:

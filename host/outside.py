@@ -27,8 +27,8 @@ _METHOD = re.compile(rb"(GET|HEAD|POST|PUT|DELETE|CONNECT|OPTIONS|TRACE|PATCH) "
 
 
 def is_http(head: bytes) -> bool:
-    """Whether a stream that begins with `head`, its first `HEAD_BYTES`, is a web page's: any page may send a
-    request to a port that speaks no HTTP."""
+    """Whether a stream that begins with `head`, its first `HEAD_BYTES`, is an HTTP request. A web page may
+    send one to any port."""
     return _METHOD.match(head) is not None
 
 

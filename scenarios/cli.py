@@ -5,8 +5,8 @@ from collections.abc import Mapping
 
 import click
 
-from scenarios.commands import calibrating, describing, live, many, running
-from scenarios.commands.parts import INTERRUPTED, UNUSABLE, advice, fail
+from scenarios.commands import calibrating, describing, live, running
+from scenarios.options import INTERRUPTED, UNUSABLE, advice, fail
 
 Section = tuple[tuple[click.Command, str], ...]
 """Commands with an example each."""
@@ -37,7 +37,7 @@ class Sections(click.Group):
 SECTIONS: dict[str, Section] = {
     "Run a night": (
         (running.run, "schmidt run quick-look"),
-        (many.campaign, "schmidt campaign campaign.yaml --out out/many"),
+        (running.campaign, "schmidt campaign campaign.yaml --out out/many"),
         (live.replay, "schmidt replay out/session"),
     ),
     "Attach your host": (
@@ -60,8 +60,8 @@ SECTIONS: dict[str, Section] = {
         (describing.export, "schmidt export out/quick-look --mcap night.mcap"),
     ),
     "Repeat the paper": (
-        (many.paper, "schmidt paper --quick"),
-        (many.objective, "schmidt objective --starts 1"),
+        (running.paper, "schmidt paper --quick"),
+        (running.objective, "schmidt objective --starts 1"),
     ),
 }
 HELP = "Emulator of the 50/80 cm Schmidt telescope's microcontroller network, and its calibration."

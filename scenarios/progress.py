@@ -62,15 +62,13 @@ def shown(what: str, total: float, begun: float = 0.0, stream: TextIO | None = N
         columns = (text_of[0], BarColumn(), TaskProgressColumn(), text_of[1])
         with Progress(*columns, console=Console(file=out), transient=True) as bar:
             task = bar.add_task(what, total=total, completed=int(begun), left="")
-            said = ""
 
             def update(done: float | None, step: str) -> None:
-                nonlocal said
                 words = f"{what}: {step}" if step else what
                 share = None if done is None else min(done, total)
                 # a new step shows at once, however soon the next follows
-                bar.update(task, completed=share, description=words, left=text(done), refresh=words != said)
-                said = words
+                new = words != bar.tasks[task].description
+                bar.update(task, completed=share, description=words, left=text(done), refresh=new)
 
             yield update
         return

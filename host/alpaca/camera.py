@@ -1,8 +1,7 @@
 """ICameraV4: the telescope's camera and the guide camera, on the emulated sky."""
 
-from host.alpaca.device import Device, Member, does, fixed, of, stated, table, zero
-from host.alpaca.errors import INVALID_OPERATION, INVALID_VALUE, AlpacaError, within
-from host.alpaca.parameters import Parameters
+from host.alpaca.device import Device, Member, does, fixed, of, table, zero
+from host.alpaca.requests import INVALID_OPERATION, INVALID_VALUE, AlpacaError, Parameters, within
 from host.alpaca.slewing import pulse
 from host.camera.camera import Camera, Frame, Order, State
 from host.camera.models import Window
@@ -89,21 +88,10 @@ CameraDevice.members = table(
     *map(_binning, ("BinX", "BinY")),
     *(Member(f"Max{name}", fixed(MOST_BINNING)) for name in ("BinX", "BinY")),
     *map(_edge, ("StartX", "StartY", "NumX", "NumY")),
-    *(Member(name, stated(name)) for name in (
-        "CameraState", "CCDTemperature", "ImageReady", "IsPulseGuiding", "PercentCompleted")),
-    Member("CameraXSize", of(lambda d: d.model.width)),
-    Member("CameraYSize", of(lambda d: d.model.height)),
-    Member("ElectronsPerADU", of(lambda d: d.model.gain_e_adu)),
     Member("ExposureMax", fixed(LONGEST_S)),
-    Member("ExposureMin", of(lambda d: d.model.shortest_s)),
-    Member("FullWellCapacity", of(lambda d: d.model.full_well_e)),
-    *(Member(name, of(lambda d: d.frame.counts)) for name in ("ImageArray", "ImageArrayVariant")),
-    Member("LastExposureDuration", of(lambda d: d.frame.seconds)),
     Member("LastExposureStartTime", of(lambda d: d.camera.clock.iso(d.frame.start_s).rstrip("Z"))),
-    Member("MaxADU", of(lambda d: d.model.most_adu)),
     *(Member(name, of(lambda d: d.model.pixel_m * 1e6)) for name in ("PixelSizeX", "PixelSizeY")),
     zero("ReadoutMode", Parameters.integer),
-    Member("SensorName", of(lambda d: d.model.sensor)),
     Member("AbortExposure", put=does(lambda d, _: d.camera.abort())),
     Member("PulseGuide", put=pulse),
     Member("StartExposure", put=does(_start)),

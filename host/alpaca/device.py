@@ -4,21 +4,21 @@ import asyncio
 import importlib.metadata
 from collections.abc import Callable, Coroutine, Mapping
 from dataclasses import dataclass
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
 import yaml
 
-from host.alpaca.errors import (
+from host.alpaca.requests import (
     ACTION_NOT_IMPLEMENTED,
     DRIVER,
-    NOT_CONNECTED,
     AlpacaError,
+    Parameters,
     not_implemented,
     of_refusal,
     within,
 )
-from host.alpaca.parameters import Parameters
 from host.telescope import AsyncDesk, Job, Refused, Snapshot, Telescope
 
 _HEARD_S, _LOOK_S = 3.0, 0.05
@@ -80,16 +80,6 @@ class Device:
     def state(self) -> dict[str, object]:
         """DeviceState without its time stamp."""
         raise NotImplementedError
-
-    async def call(self, member: Member, put: bool, given: Parameters) -> object:
-        """Carry out one request; returns its Value."""
-        if not (self.connected or member.always):
-            raise AlpacaError(NOT_CONNECTED, f"{self.kind} is not connected")
-        if not put:
-            assert member.get is not None
-            return member.get(self, given)
-        assert member.put is not None
-        return await member.put(self, given)
 
     async def act(self, given: Parameters) -> str:
         """Action: one of SupportedActions."""
@@ -167,9 +157,11 @@ CONSTANTS: dict[str, dict[str, Any]] = yaml.safe_load(
 
 
 def table(kind: str, *members: Member) -> dict[str, Member]:
-    """Members of a kind of device by the word in the URL; what never changes is in `constants.yaml`."""
+    """Members of a kind of device by the word in the URL; what needs no code is in `constants.yaml`."""
     own = CONSTANTS[kind]
     constant = [Member(name, fixed(value)) for name, value in own.get("fixed", {}).items()]
+    constant += [Member(name, of(attrgetter(path))) for name, path in own.get("reads", {}).items()]
+    constant += [Member(name, stated(name)) for name in own.get("stated", ())]
     constant += [Member(name, missing(name)) for name in own.get("missing", ())]
     constant += [Member(name, put=missing_put(name)) for name in own.get("missing_methods", ())]
     constant += [Member(name, missing(name), missing_put(name)) for name in own.get("missing_both", ())]

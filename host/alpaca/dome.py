@@ -4,9 +4,8 @@ import asyncio
 from collections.abc import Callable
 
 from bus.protocol import Reply
-from host.alpaca.device import Device, Member, stated, table, unknown
-from host.alpaca.errors import within
-from host.alpaca.parameters import Parameters
+from host.alpaca.device import Device, Member, table, unknown
+from host.alpaca.requests import Parameters, within
 from host.procedures.dome import BOARD as DOME_BOARD
 from host.telescope import Job, Telescope
 
@@ -66,7 +65,6 @@ async def _turn(device: DomeDevice, given: Parameters) -> None:
 
 DomeDevice.members = table(
     "dome",
-    *(Member(name, stated(name)) for name in ("Azimuth", "ShutterStatus", "Slewing")),
     Member("Slaved", lambda device, _: device.desk.telescope.house.slaved, _slave),
     Member("AbortSlew", put=lambda device, _: device.command(lambda t: t.house.stop())),
     Member("CloseShutter", put=lambda device, _: device.command(lambda t: t.house.shutter(False))),

@@ -1,8 +1,7 @@
 """IFocuserV4: the focus drive in half steps of 6.25 µm, 0 at the inner end."""
 
-from host.alpaca.device import Device, Member, fixed, missing_put, stated, table, unknown
-from host.alpaca.errors import within
-from host.alpaca.parameters import Parameters
+from host.alpaca.device import Device, Member, fixed, missing_put, table, unknown
+from host.alpaca.requests import Parameters, within
 from host.procedures.focus import TRAVEL_HALF_STEPS
 
 MAX_STEP = 2 * TRAVEL_HALF_STEPS
@@ -37,7 +36,6 @@ async def _move(device: FocuserDevice, given: Parameters) -> None:
 
 FocuserDevice.members = table(
     "focuser",
-    *(Member(name, stated(name)) for name in ("IsMoving", "Position")),
     Member("MaxIncrement", fixed(MAX_STEP)),
     Member("MaxStep", fixed(MAX_STEP)),
     Member("TempComp", fixed(False), missing_put("TempComp")),

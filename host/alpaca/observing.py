@@ -4,8 +4,7 @@ import math
 
 from bus.protocol.nodes import WEATHER
 from host.alpaca.device import CONSTANTS, Device, Member, does, stated, table, unknown, zero
-from host.alpaca.errors import INVALID_VALUE, AlpacaError, not_implemented
-from host.alpaca.parameters import Parameters
+from host.alpaca.requests import INVALID_VALUE, AlpacaError, Parameters, not_implemented
 
 _WET_MM_H = 1.0
 """The sensor tells wet from dry; ASCOM: any positive rate means wet."""

@@ -19,10 +19,9 @@ from bus.protocol.nodes import DOME, WEATHER
 from host.alpaca.camera import CameraDevice
 from host.alpaca.device import Device
 from host.alpaca.dome import DomeDevice
-from host.alpaca.errors import AlpacaError, Malformed
 from host.alpaca.focuser import FocuserDevice
 from host.alpaca.observing import ObservingConditionsDevice, SafetyMonitorDevice
-from host.alpaca.parameters import Parameters
+from host.alpaca.requests import NOT_CONNECTED, AlpacaError, Malformed, Parameters
 from host.alpaca.telescope import TelescopeDevice
 from host.camera.camera import Camera
 from host.camera.readout import Counts
@@ -83,7 +82,12 @@ class Alpaca:
         value: object = None
         number, message = 0, ""
         try:
-            value = await device.call(member, put, given)
+            if not (device.connected or member.always):
+                raise AlpacaError(NOT_CONNECTED, f"{device.kind} is not connected")
+            if member.put is not None and put:
+                value = await member.put(device, given)
+            elif member.get is not None:
+                value = member.get(device, given)
         except Malformed as error:
             return PlainTextResponse(str(error), 400)
         except AlpacaError as error:

@@ -4,10 +4,17 @@ import math
 from collections.abc import Callable
 
 from host.alpaca.device import Device, Member, Put
-from host.alpaca.errors import INVALID_OPERATION, INVALID_VALUE, PARKED, VALUE_NOT_SET, AlpacaError, within
-from host.alpaca.parameters import Parameters
-from host.sky.apparent import Place, star_of_apparent
+from host.alpaca.requests import (
+    INVALID_OPERATION,
+    INVALID_VALUE,
+    PARKED,
+    VALUE_NOT_SET,
+    AlpacaError,
+    Parameters,
+    within,
+)
 from host.sky.catalogue import Star
+from host.sky.observed import Place, star_of_apparent
 from host.telescope import Job, Telescope
 from host.telescope.paddle import FASTEST_ARCSEC_S
 

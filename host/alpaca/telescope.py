@@ -5,10 +5,8 @@ from collections.abc import Callable
 
 from host.alpaca import slewing
 from host.alpaca.device import Get, Member, Put, does, fixed, missing, missing_put, of, table, unknown
-from host.alpaca.errors import INVALID_OPERATION, VALUE_NOT_SET, AlpacaError, within
-from host.alpaca.parameters import Parameters
-from host.sky.apparent import Place, sidereal_time_rad
-from host.sky.observed import Observed
+from host.alpaca.requests import INVALID_OPERATION, VALUE_NOT_SET, AlpacaError, Parameters, within
+from host.sky.observed import Observed, Place, sidereal_time_rad
 from host.sky.tracks import SIDEREAL_ARCSEC_S
 from host.telescope import DriveRate, Observatory
 

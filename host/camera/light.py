@@ -37,8 +37,8 @@ _FINE = 8
 """Parts of a pixel, each way, by which the edge of an image out of focus is drawn."""
 
 
-_ERF = (0.254829592, -0.284496736, 1.421413741, -1.453152027, 1.061405429)
-"""Abramowitz and Stegun, 7.1.26: the error function to 1.5e-7. scipy has it, but is not of the base."""
+_erf = np.vectorize(math.erf, otypes=[float])
+"""scipy has it, but is not of the base."""
 
 
 def light(
@@ -183,8 +183,3 @@ def _draw(image: Array, x: Array, y: Array, electrons: Array, sigma: float) -> N
 def _share(at: Array, first: int, last: int, sigma: float) -> Array:
     edges = np.subtract.outer(-at, -(np.arange(first, last + 2) - 0.5)) / (math.sqrt(2) * sigma)
     return np.asarray(np.diff(_erf(edges), axis=1) / 2)
-
-
-def _erf(x: Array) -> Array:
-    t = 1 / (1 + 0.3275911 * np.abs(x))
-    return np.asarray(np.sign(x) * (1 - np.polyval((*_ERF[::-1], 0.0), t) * np.exp(-(x**2))))

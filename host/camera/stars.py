@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import astuple, replace
 from pathlib import Path
-from typing import Final, NamedTuple, Protocol
+from typing import Final, NamedTuple
 
 import erfa
 import numpy as np
@@ -44,25 +44,12 @@ class Stars(NamedTuple):
 
     def near(self, right_ascension: float, declination: float, radius: float) -> "Stars":
         """Those within a radius, rad."""
-        away = separation(self.right_ascension, self.declination, right_ascension, declination)
+        away = erfa.seps(self.right_ascension, self.declination, right_ascension, declination)
         return self.where(away <= radius)
 
     def where(self, kept: npt.NDArray[np.bool_]) -> "Stars":
         """Some of them."""
         return Stars(*(column[kept] for column in self))
-
-
-class Sky(Protocol):
-    """All stars there are."""
-
-    def near(self, right_ascension: float, declination: float, radius: float) -> Stars:
-        """Those within a radius, all rad."""
-
-
-def separation(ra: Array, dec: Array, ra0: float, dec0: float) -> Array:
-    """Angles between places, rad (haversine)."""
-    half = np.sin((dec - dec0) / 2) ** 2 + np.cos(dec) * math.cos(dec0) * np.sin((ra - ra0) / 2) ** 2
-    return np.asarray(2 * np.arcsin(np.sqrt(np.clip(half, 0, 1))))
 
 
 def stars(ra: npt.ArrayLike, dec: npt.ArrayLike, magnitude: npt.ArrayLike) -> Stars:
@@ -101,7 +88,7 @@ class SyntheticSky:
                 continue
             count = max(1, round(2 * math.pi * math.cos(middle) / _CELL))
             ra = (np.arange(count) + 0.5) * 2 * math.pi / count
-            away = separation(ra, np.full(count, middle), right_ascension, declination)
+            away = erfa.seps(ra, middle, right_ascension, declination)
             found += [self._cell(band, int(k), count) for k in np.flatnonzero(away <= reach)]
         joined = Stars(*map(np.concatenate, zip(*found, strict=True)))
         return joined.near(right_ascension, declination, radius)
@@ -161,3 +148,7 @@ def turning(look: Look, step_rad: float, site: Site, clock: Clock) -> npt.NDArra
         east = math.remainder(ra - ra0, 2 * math.pi) * math.cos(dec0)
         columns.append((math.degrees(east) / step_rad, math.degrees(dec - dec0) / step_rad))
     return np.array(columns).T
+
+
+Sky = Stars | SyntheticSky
+"""All stars there are, in a radius about a place."""

@@ -4,8 +4,7 @@ import math
 from typing import NamedTuple
 
 from host.sky.angles import format_degrees
-from host.sky.apparent import horizontal, sidereal_time_rad
-from host.sky.observed import Observed
+from host.sky.observed import Observed, horizontal, sidereal_time_rad
 from host.telescope import Observatory, Snapshot, Telescope
 
 

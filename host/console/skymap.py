@@ -4,11 +4,10 @@ import math
 
 import numpy as np
 
-from host.sky.apparent import equatorial, horizontal
 from host.sky.catalogue import Star
 from host.sky.listed import Listed, listed, moon
 from host.sky.mount import AxisScale, Mount
-from host.sky.observed import Observed, observe_all
+from host.sky.observed import Observed, equatorial, horizontal, observe_all
 from host.sky.site import Site
 from host.telescope import Observatory
 

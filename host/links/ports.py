@@ -5,6 +5,7 @@ import select
 import socket
 import threading
 from collections.abc import Callable
+from dataclasses import dataclass
 from queue import SimpleQueue
 
 import can
@@ -20,6 +21,7 @@ READ_S = 0.2
 RETRY_S = 1.0
 
 
+@dataclass(eq=False)
 class LinkTask:
     """A thread that reads one port into `inbox` as (name, bytes).
 
@@ -27,22 +29,17 @@ class LinkTask:
     lost: writes that found it broken.
     """
 
-    def __init__(
-        self,
-        name: str,
-        opener: Callable[[], "HidPort | CanPort | SerialPort"],
-        inbox: SimpleQueue[tuple[str, bytes]],
-        say: Callable[[str], None],
-    ) -> None:
-        self.name = name
-        self.lost = 0
-        self.breaks = 0
-        self._opener = opener
-        self._inbox = inbox
-        self._say = say
+    name: str
+    opener: Callable[[], "HidPort | CanPort | SerialPort"]
+    inbox: SimpleQueue[tuple[str, bytes]]
+    say: Callable[[str], None]
+    lost: int = 0
+    breaks: int = 0
+
+    def __post_init__(self) -> None:
         self._port: HidPort | CanPort | SerialPort | None = None
         self._end = threading.Event()
-        self._thread = threading.Thread(target=self._run, name=name, daemon=True)
+        self._thread = threading.Thread(target=self._run, name=self.name, daemon=True)
 
     def start(self) -> None:
         """Begin; a port that is not there is tried again every second."""
@@ -73,18 +70,18 @@ class LinkTask:
         reason = ""
         while not self._end.is_set():
             try:
-                self._port = self._opener()
-                self._say(f"{self.name}: open")
+                self._port = self.opener()
+                self.say(f"{self.name}: open")
                 reason = ""
                 while not self._end.is_set():
                     data = self._port.read()
                     if data:
-                        self._inbox.put((self.name, data))
+                        self.inbox.put((self.name, data))
             except Exception as error:  # whatever a driver raises, it breaks this link only
                 self.breaks += 1
                 words = reason_of(error)
                 if words != reason:
-                    self._say(f"{self.name}: broken: {words}; tried again every second")
+                    self.say(f"{self.name}: broken: {words}; tried again every second")
                     reason = words
             finally:
                 port, self._port = self._port, None

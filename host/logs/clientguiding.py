@@ -15,7 +15,7 @@ from host.camera.camera import Frame
 from host.camera.models import GUIDE
 from host.logs.files import LogError, write_file
 from host.logs.guidelog import opening, section
-from host.logs.journal import KEPT, put_aside
+from host.logs.journal import KEPT_FILES, put_aside
 from host.procedures.autoguide import Guided
 from host.sky.observed import observe_many
 from host.sky.tracks import Pulse, SkyTrack
@@ -102,7 +102,7 @@ class ClientGuiding:
             return
         try:
             if not self._begun and self._file.exists():
-                put_aside(self._file, KEPT)
+                put_aside(self._file, KEPT_FILES)
             self._begun = True
             fresh = self._file.with_suffix(".new")  # whoever reads the log finds a whole one
             write_file(fresh, "\n".join([opening(version("schmidt"), about.clock, 0.0), *sections]))

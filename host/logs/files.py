@@ -4,6 +4,7 @@ import hashlib
 import os
 import re
 import shutil
+from datetime import datetime
 from pathlib import Path
 from typing import Final
 
@@ -143,7 +144,7 @@ LEVEL: Final = 1
 """The log of a short night shrinks to a seventh (987 to 143 kB)."""
 
 
-class ZstdFile:
+class ZstdFile(BlockFile):
     """As a `BlockFile`; raises `LogError` like one. What is written waits for `flush` or the piece's end.
 
     Each piece is a zstd frame of its own, so that what is there unpacks whatever happens. Programs such as
@@ -153,7 +154,7 @@ class ZstdFile:
     def __init__(self, path: Path) -> None:
         import pyarrow
 
-        self._file = BlockFile(path, lines=False)
+        super().__init__(path, lines=False)
         self._codec = pyarrow.Codec("zstd", compression_level=LEVEL)
         self._waiting = bytearray()
 
@@ -169,11 +170,34 @@ class ZstdFile:
         if self._waiting:
             data = bytes(self._waiting)
             self._waiting.clear()
-            self._file.write(self._codec.compress(data, asbytes=True))
+            super().write(self._codec.compress(data, asbytes=True))
 
     def close(self) -> None:
         """Flush and close; a second close does nothing."""
         try:
             self.flush()
         finally:
-            self._file.close()
+            super().close()
+
+
+FORMATS: Final = ("mf4", "blf", "asc")
+
+
+def convert(log: Path, ending: str, start_utc: str) -> Path:
+    """Write can.ENDING beside a can.log; returns its path. start_utc: of the log, ISO 8601.
+
+    Raises LogError when it cannot be written.
+    """
+    import can
+
+    start_s = datetime.fromisoformat(start_utc).timestamp()
+
+    target = log.with_suffix(f".{ending}")
+    try:
+        with can.CanutilsLogReader(str(log)) as reader, can.Logger(str(target)) as writer:
+            for message in reader:
+                message.timestamp += start_s
+                writer(message)
+    except OSError as error:
+        raise LogError(f"{target}: {error.strerror or error}") from None
+    return target

@@ -122,7 +122,7 @@ class AsciiLogs(Logs):
 
 FULL_BYTES = 10_000_000
 """Size at which a log is put aside: about six hours of the sensor log at four lines a second. ASSUMPTION."""
-KEPT = 9
+KEPT_FILES = 9
 """Files put aside per log, `NAME.log.1` being the youngest. ASSUMPTION."""
 
 
@@ -130,7 +130,7 @@ class RotatingFile(LineFile):
     """A `LineFile` that starts afresh, with its header, when it is full or when it finds one of an earlier
     session. Whole lines only ever stand in one file."""
 
-    def __init__(self, path: Path, full_bytes: int = FULL_BYTES, kept: int = KEPT) -> None:
+    def __init__(self, path: Path, full_bytes: int = FULL_BYTES, kept: int = KEPT_FILES) -> None:
         self._full_bytes = full_bytes
         self._kept = kept
         self._bytes = 0

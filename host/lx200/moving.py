@@ -4,9 +4,9 @@ from collections.abc import Callable
 
 from bus.protocol import SpeedClass
 from host.lx200.session import FREQUENCIES, Handler, Session
-from host.sky.apparent import star_of_apparent
 from host.sky.catalogue import Star
-from host.telescope import DriveRate, Reason, Refused, Telescope
+from host.sky.observed import star_of_apparent
+from host.telescope import DriveRate, Reason, Telescope
 
 _KEYS = {"R" + letter: speed for letter, speed in zip(
     "SMCG", (SpeedClass.SLEW, SpeedClass.SET, SpeedClass.GUIDE, SpeedClass.FINE), strict=True)}  # fmt: skip
@@ -18,14 +18,12 @@ async def slew(session: Session, _: str) -> str:
     """`:MS#`: `0`, or `1<text>#` below the horizon, `2<text>#` for whatever else is in the way; one piece."""
     try:
         star = _target(session)
-        await session.desk.do(lambda t: t.drive.goto(star, wake=True))
-    except Refused as refusal:
-        number = "1" if refusal.reason is Reason.BELOW_HORIZON else "2"
-        session.say(str(refusal))
-        return number + _plain(str(refusal)) + "#"
     except ValueError as error:
         return f"2{error}#"
-    return "0"
+    refusal = await session.act(lambda t: t.drive.goto(star, wake=True))
+    if refusal is None:
+        return "0"
+    return f"{'1' if refusal.reason is Reason.BELOW_HORIZON else '2'}{_plain(str(refusal))}#"
 
 
 async def slew_ground(session: Session, _: str) -> str:
@@ -34,12 +32,8 @@ async def slew_ground(session: Session, _: str) -> str:
     if azimuth is None or altitude is None:
         session.say("no azimuth and altitude have been set")
         return "1"
-    try:
-        await session.desk.do(lambda t: t.drive.goto_altaz(azimuth, altitude, wake=True))
-    except Refused as refusal:
-        session.say(str(refusal))
-        return "1"
-    return "0"
+    refusal = await session.act(lambda t: t.drive.goto_altaz(azimuth, altitude, wake=True))
+    return "0" if refusal is None else "1"
 
 
 async def sync(session: Session, _: str) -> str:

@@ -5,38 +5,28 @@ from collections.abc import Callable
 
 from host.lx200 import angles
 from host.lx200.session import Handler, Session
-from host.sky.apparent import sidereal_time_rad
-from host.sky.observed import Observed
+from host.sky.observed import Observed, Place, sidereal_time_rad
 
+Encoders = tuple[int, int, float]
 _SLEWING = "\x7f"
 """The bar of Meade's `:D#`: one is enough, INDI looks for anything before the `#`."""
 
 
-async def right_ascension(session: Session, _: str) -> str:
-    """`:GR#`, apparent place of date."""
-    place = await session.place()
-    return angles.hours(place.right_ascension_rad, session.precise) + "#"
+def _points(read: Callable[[Session, Encoders], str]) -> Handler:
+    async def answer(session: Session, _: str) -> str:
+        return read(session, await session.desk.encoders()) + "#"
+
+    return answer
 
 
-async def declination(session: Session, _: str) -> str:
-    """`:GD#`, apparent place of date."""
-    place = await session.place()
-    return angles.signed(place.declination_rad, session.precise) + "#"
+def _place(session: Session, at: Encoders) -> Place:
+    """Apparent place of date."""
+    return session.telescope.observatory.apparent(*at)
 
 
-async def altitude(session: Session, _: str) -> str:
-    """`:GA#`, with refraction, as the tube stands."""
-    return angles.signed((await _observed(session)).altitude_rad, session.precise, "'") + "#"
-
-
-async def azimuth(session: Session, _: str) -> str:
-    """`:GZ#`, from north through east."""
-    return angles.unsigned((await _observed(session)).azimuth_rad, session.precise, "'") + "#"
-
-
-async def _observed(session: Session) -> Observed:
-    ra, dec, _ = await session.desk.encoders()
-    return session.telescope.observatory.observed(ra, dec)
+def _seen(session: Session, at: Encoders) -> Observed:
+    """With refraction, as the tube stands; azimuth from north through east."""
+    return session.telescope.observatory.observed(*at[:2])
 
 
 def _says(read: Callable[[Session], str]) -> Handler:
@@ -82,7 +72,10 @@ _READ: dict[str, Callable[[Session], str]] = {
     "GVF": lambda _: f"schmidt {_VERSION}",
 }
 READING: dict[str, Handler] = {
-    "GR": right_ascension, "GD": declination, "GA": altitude, "GZ": azimuth,
+    "GR": _points(lambda s, at: angles.hours(_place(s, at).right_ascension_rad, s.precise)),
+    "GD": _points(lambda s, at: angles.signed(_place(s, at).declination_rad, s.precise)),
+    "GA": _points(lambda s, at: angles.signed(_seen(s, at).altitude_rad, s.precise, "'")),
+    "GZ": _points(lambda s, at: angles.unsigned(_seen(s, at).azimuth_rad, s.precise, "'")),
     **{letters: _says(read) for letters, read in _READ.items()},
 }  # fmt: skip
 """Command letters to handlers."""

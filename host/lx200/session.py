@@ -6,11 +6,11 @@ Bytes become commands however they were cut: split, joined, doubled, with rubbis
 import datetime as dt
 import re
 from collections.abc import Callable, Coroutine, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 from bus.protocol import SpeedClass
-from host.sky.apparent import Place
-from host.sky.observed import Clock
+from host.sky.observed import Clock, Place
 from host.telescope import AsyncDesk, DriveRate, Refused, Snapshot, Telescope
 
 FREQUENCIES = {DriveRate.SIDEREAL: 60.1, DriveRate.SOLAR: 60.0, DriveRate.LUNAR: 57.9, DriveRate.KING: 60.1}
@@ -85,6 +85,7 @@ class Parser:
 Handler = Callable[["Session", str], Coroutine[Any, Any, str]]
 
 
+@dataclass(eq=False)
 class Session:
     """What belongs to one client, so that two at once do not get into each other's way.
 
@@ -92,27 +93,21 @@ class Session:
     before an argument. unknown: commands nobody knows, so far.
     """
 
-    def __init__(
-        self,
-        desk: AsyncDesk,
-        box: Handbox,
-        plain: Mapping[str, Handler],
-        taking: Mapping[str, Handler],
-        name: str,
-    ) -> None:
-        self.desk = desk
-        self.box = box
-        self.name = name
-        self.precise = box.precise
-        self.speed = SpeedClass.SLEW
-        self.focus_slow = False
-        self.target_ra_rad: float | None = None
-        self.target_dec_rad: float | None = None
-        self.target_az_rad: float | None = None
-        self.target_alt_rad: float | None = None
-        self.unknown = 0
-        self._plain = plain
-        self._taking = taking
+    desk: AsyncDesk
+    box: Handbox
+    plain: Mapping[str, Handler]
+    taking: Mapping[str, Handler]
+    name: str
+    speed: SpeedClass = SpeedClass.SLEW
+    focus_slow: bool = False
+    target_ra_rad: float | None = None
+    target_dec_rad: float | None = None
+    target_az_rad: float | None = None
+    target_alt_rad: float | None = None
+    unknown: int = 0
+
+    def __post_init__(self) -> None:
+        self.precise = self.box.precise
         self._parser = Parser()
 
     async def feed(self, data: bytes) -> bytes:
@@ -131,11 +126,11 @@ class Session:
     async def _carry_out(self, command: str) -> str:
         if command == ACK:
             return "P"
-        if command in self._plain:
-            return await self._plain[command](self, "")
+        if command in self.plain:
+            return await self.plain[command](self, "")
         for length in (2, 1):
-            if command[:length] in self._taking:
-                return await self._taking[command[:length]](self, command[length:])
+            if command[:length] in self.taking:
+                return await self.taking[command[:length]](self, command[length:])
         self.unknown += 1
         return ""
 
@@ -150,22 +145,20 @@ class Session:
         """For what may be read from any thread."""
         return self.desk.telescope
 
-    async def place(self) -> Place:
-        """Apparent place of date that the telescope points at."""
-        return self.telescope.observatory.apparent(*await self.desk.encoders())
-
     def target(self) -> Place:
         """What `:Sr` and `:Sd` have set; raises ValueError before both were."""
         if self.target_ra_rad is None or self.target_dec_rad is None:
             raise ValueError("no target has been set")
         return Place(self.target_ra_rad, self.target_dec_rad)
 
-    async def act(self, act: Callable[[Telescope], object]) -> None:
-        """A command that has no answer: a refusal goes into the log instead."""
+    async def act(self, act: Callable[[Telescope], object]) -> Refused | None:
+        """A command; its refusal goes into the log, too, as many have no answer."""
         try:
             await self.desk.do(act)
         except Refused as refusal:
             self.say(str(refusal))
+            return refusal
+        return None
 
     def say(self, text: str) -> None:
         """A line in the error log."""

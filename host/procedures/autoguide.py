@@ -8,11 +8,10 @@ from typing import Final
 from bus.protocol import Opcode
 from bus.protocol.scales import rate_q16
 from bus.units import ARCSEC_PER_RAD
-from host.client import Client, ClientError, Procedure
+from host.client import TICK_NS, Client, ClientError, Procedure
+from host.procedures.manual import BOARDS
 from host.procedures.pointing import Pointing
 from host.procedures.pointing_run import Eye
-from host.procedures.power import AXES
-from host.procedures.shifting import TICK_S, Shifting
 from host.sky.tracks import GUIDE_ARCSEC_S, RAMP_S, Pulse, SkyTrack
 from host.sky.visibility import Standpoint
 
@@ -74,7 +73,7 @@ def autoguide(
             next(each)
         yield
     for axis, opcode in enumerate(opcodes):  # a pulse may be under way
-        yield from client.ask(AXES[axis], opcode, rate_q16(followed.rates(client.now_s)[axis]))
+        yield from client.ask(BOARDS[axis], opcode, rate_q16(followed.rates(client.now_s)[axis]))
     pointing.tracking = False
 
 
@@ -89,7 +88,7 @@ def _driven(client: Client, axis: int, opcode: Opcode, track: SkyTrack) -> Proce
             yield
         else:
             sent = rate
-            yield from client.ask(AXES[axis], opcode, rate)
+            yield from client.ask(BOARDS[axis], opcode, rate)
 
 
 def _exposures(
@@ -130,3 +129,31 @@ def _pulse_s(off: float, aggressiveness: float, speed: float) -> float:
     if abs(off) < LEAST_ARCSEC:
         return 0.0
     return math.copysign(min(round(aggressiveness * abs(off) / speed, 3), LONGEST_S), off)
+
+
+TICK_S = TICK_NS * 1e-9
+"""Between two commands at the most often, s."""
+_LATE = 1.5
+"""Ticks between two commands from which they are late; a tick more or less is 1 or 2."""
+
+
+class Shifting:
+    """Of one axis: the rate that brings it, within a tick, from where its rates have taken it to a place.
+
+    made: where it begins, ″; t_s: when.
+    """
+
+    def __init__(self, made: float, t_s: float) -> None:
+        self._made, self._rate, self._t_s = made, 0.0, t_s
+
+    def rate(self, wanted: float, t_s: float) -> float:
+        """″/s from now on, towards a place wanted a tick from now.
+
+        A rate lasts until the next one is taken. Where that takes ticks, as on a slow machine, the way is
+        given as long: in one tick it would be overshot, more every time.
+        """
+        gone_s = t_s - self._t_s
+        self._made += self._rate * gone_s
+        lasts_s = gone_s if gone_s > _LATE * TICK_S else TICK_S
+        self._rate, self._t_s = (wanted - self._made) / lasts_s, t_s
+        return self._rate

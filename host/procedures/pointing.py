@@ -7,7 +7,7 @@ from typing import Final
 from bus.protocol import Device, Opcode, SpeedClass
 from bus.protocol.scales import rate_q16
 from host.client import Client, ClientError, Procedure
-from host.procedures.power import AXES, power_off
+from host.procedures.manual import BOARDS, power_off
 from host.sky.mount import STEP_ARCSEC, Mount
 from host.sky.tracks import StarTrack
 
@@ -91,7 +91,7 @@ class Pointing:
         for name in classes:
             yield from self._send_rates()
             steps = track.steps(self.client.now_s)
-            for axis, target in zip(AXES, steps, strict=True):
+            for axis, target in zip(BOARDS, steps, strict=True):
                 yield from self.client.ask(axis, Opcode.MOVE_TO, target, SpeedClass[name.upper()])
             reach = REACH[name]
             what = f"{track.star.name}: within {reach.arcsec:g}″ at {name} speed"
@@ -122,7 +122,7 @@ class Pointing:
                 elif errors is not None:
                     sums, count = [total + each for total, each in zip(sums, errors, strict=True)], count + 1
                 yield
-            for index, axis in enumerate(AXES):
+            for index, axis in enumerate(BOARDS):
                 mean = sums[index] / max(count, 1)
                 if abs(mean) > LOST_ARCSEC:
                     name = self.track.star.name if self.track is not None else "its target"
@@ -136,10 +136,10 @@ class Pointing:
         """Move to the park position, then switch the axes off."""
         self.track, self.on_target, self.tracking = None, False, False
         goals = self.mount.park_steps
-        for axis in AXES:
+        for axis in BOARDS:
             yield from self.client.ask(axis, Opcode.TRACK_RATE, 0)
         for name in CLASSES[:3]:
-            for axis, goal in zip(AXES, goals, strict=True):
+            for axis, goal in zip(BOARDS, goals, strict=True):
                 yield from self.client.ask(axis, Opcode.MOVE_TO, goal, SpeedClass[name.upper()])
             reach = REACH[name]
             near = partial(self._near_steps, goals, reach.arcsec)
@@ -151,7 +151,7 @@ class Pointing:
     def _send_rates(self, trims: tuple[float, float] = (0.0, 0.0)) -> Procedure:
         assert self.track is not None
         rates = self.track.rates(self.client.now_s)
-        for axis, rate, trim in zip(AXES, rates, trims, strict=True):
+        for axis, rate, trim in zip(BOARDS, rates, trims, strict=True):
             yield from self.client.ask(axis, Opcode.TRACK_RATE, rate_q16(rate + trim))
 
     def _settle(self, reach: Reach) -> Procedure:

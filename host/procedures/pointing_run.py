@@ -5,9 +5,8 @@ from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
 
 from host.procedures.pointing import ENCODERS, Pointing
-from host.sky.apparent import apparent_of_observed, equatorial, star_of_apparent
 from host.sky.catalogue import Star
-from host.sky.observed import Observed, observe
+from host.sky.observed import Observed, apparent_of_observed, equatorial, observe, star_of_apparent
 from host.sky.pointstars import Sighting
 from host.sky.tracks import StarTrack
 from host.sky.visibility import Standpoint

@@ -14,9 +14,8 @@ import numpy as np
 
 from host.logs.files import reason
 from host.sky.angles import parse_declination, parse_right_ascension
-from host.sky.apparent import terrestrial
 from host.sky.catalogue import STARS, Star
-from host.sky.observed import Clock, Observed, observe
+from host.sky.observed import Clock, Observed, observe, terrestrial
 from host.sky.site import Site
 
 FAINTEST_NGC = 9.0

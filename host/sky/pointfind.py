@@ -7,10 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from host.sky.pointfit import SIGNIFICANT, beside, beside_others, fit_stars, held_out, without
-from host.sky.pointmodel import PointingModel
+from host.sky.pointmodel import GEOMETRY, TERMS, Array, PointingModel
 from host.sky.pointsmooth import Smooth, chance, functions
 from host.sky.pointstars import Stars, rms
-from host.sky.pointterms import GEOMETRY, TERMS, Array
 
 _CHANCE = 1 / 400
 """Sound runs of which one shows something over any variable: as rare as a false term (pointfit)."""

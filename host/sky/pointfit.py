@@ -7,9 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from host.sky.mount import Mount
-from host.sky.pointmodel import PointingModel
+from host.sky.pointmodel import GEOMETRY, TERMS, ZEROS, Array, PointingModel
 from host.sky.pointstars import Sighting, Stars, rms, stars_of, terms_of
-from host.sky.pointterms import GEOMETRY, TERMS, ZEROS, Array
 
 FEWEST_STARS = 6
 """Twelve coordinates for the six terms of geometry. ASSUMPTION: twice as many as unknowns."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import math
 import re
-from collections.abc import Iterator
 from pathlib import Path
 
 import erfa
@@ -64,7 +63,11 @@ def _csv(path: Path, lines: list[str]) -> Stars:
     every = [each.strip() for each in lines[first].split(",")]
     names = [each for each in every if each != LABEL]
     rows = []
-    for number, row in enumerate(_rows(path, lines[first + 1 :]), first + 2):
+    try:
+        table = list(csv.reader(lines[first + 1 :]))
+    except csv.Error as error:
+        raise ValueError(f"{path}: {error}") from None
+    for number, row in enumerate(table, first + 2):
         if row and not row[0].startswith("#"):
             if len(row) != len(every):
                 raise ValueError(f"{path}:{number}: {len(row)} values for {len(every)} columns")
@@ -75,19 +78,12 @@ def _csv(path: Path, lines: list[str]) -> Stars:
                     if name != LABEL
                 ]
             )
-    table = dict(zip(names, np.array(rows).reshape(-1, len(names)).T, strict=True))
-    angles = [np.radians(table.pop(each)) for each in (HOUR_ANGLE, DECLINATION, *AXES)]
+    columns = dict(zip(names, np.array(rows).reshape(-1, len(names)).T, strict=True))
+    angles = [np.radians(columns.pop(each)) for each in (HOUR_ANGLE, DECLINATION, *AXES)]
     return Stars(
         h=angles[0], d=angles[1], ra=angles[2], dec=angles[3],
-        latitude_rad=math.radians(_number(path, 1, latitude, 90.0)), others=table,
+        latitude_rad=math.radians(_number(path, 1, latitude, 90.0)), others=columns,
     )  # fmt: skip
-
-
-def _rows(path: Path, lines: list[str]) -> Iterator[list[str]]:
-    try:
-        yield from csv.reader(lines)
-    except csv.Error as error:
-        raise ValueError(f"{path}: {error}") from None
 
 
 def _tpoint(path: Path, lines: list[str]) -> Stars:

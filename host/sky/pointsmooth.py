@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from host.sky.pointfit import NEW, without
+from host.sky.pointmodel import Array
 from host.sky.pointstars import Stars
-from host.sky.pointterms import Array
 
 _DEGREE = 4
 """Of the polynomial over a variable: a period and a half over its range. ASSUMPTION."""

@@ -9,8 +9,7 @@ import numpy as np
 
 from bus.units import ARCSEC_PER_RAD
 from host.sky.mount import Mount
-from host.sky.pointmodel import PointingModel, Term
-from host.sky.pointterms import TERMS, Array
+from host.sky.pointmodel import TERMS, Array, PointingModel, Term
 
 _TURNS = 3
 """Formulas are of first order: a coefficient of 300″ moves by 0.4″ after the first solution."""

@@ -1,6 +1,7 @@
 """Is a target within reach, now and until the end of what is planned? Asked before anything moves."""
 
 import math
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -8,7 +9,8 @@ import numpy as np
 from host.sky.angles import format_degrees
 from host.sky.catalogue import Star
 from host.sky.mount import Mount
-from host.sky.observed import Clock, observe_many
+from host.sky.observed import Clock, Observed, Place, apparent_of_observed, horizontal, observe_many
+from host.sky.pointstars import Sighting
 from host.sky.site import Site
 
 HORIZON_RAD = math.radians(15.0)
@@ -75,3 +77,25 @@ def check_reachable(star: Star, place: Standpoint, t_s: float, stay_s: float = 0
 def _when(index: int, times: np.ndarray[tuple[int, ...], np.dtype[np.float64]], clock: Clock) -> str:
     moment = "when it is to be reached" if index == 0 else "before the track ends"
     return f"{moment} ({clock.iso(float(times[index]))[:19]}Z)"
+
+
+@dataclass
+class Observatory:
+    """Site, clock and mount. The mount is replaced as a whole when the telescope is synchronised or its
+    limits change. So a reader in another thread always sees one that fits together."""
+
+    site: Site
+    clock: Clock
+    mount: Mount
+    horizon_rad: float = HORIZON_RAD
+    name: str = "Nainital"
+    stars: tuple[Sighting, ...] = ()
+    """Stars that the telescope was synchronised on, for a pointing model."""
+
+    def observed(self, ra_steps: int, dec_steps: int) -> Observed:
+        """Where encoder readings point: observed hour angle, declination, altitude, azimuth."""
+        return horizontal(*self.mount.place(ra_steps, dec_steps), self.site)
+
+    def apparent(self, ra_steps: int, dec_steps: int, t_s: float) -> Place:
+        """Apparent place of date that encoder readings latched at `t_s` point to."""
+        return apparent_of_observed(*self.mount.place(ra_steps, dec_steps), self.site, self.clock, t_s)

@@ -1,9 +1,9 @@
 """The typed telescope client: what doors, consoles and programs command the telescope by."""
 
 from host.sky.tracks import DriveRate
+from host.sky.visibility import Observatory
 from host.telescope.desk import AsyncDesk
 from host.telescope.jobs import Activity, Job, Reason, Refused
-from host.telescope.observatory import Observatory
 from host.telescope.state import AxisState, BoardState, FocusState, Snapshot
 from host.telescope.telescope import Telescope
 

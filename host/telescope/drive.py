@@ -8,20 +8,18 @@ from bus.protocol.scales import rate_q16
 from bus.units import ARCSEC_PER_RAD
 from host.client import Client, Procedure
 from host.logs.journal import Logs
-from host.procedures import power
+from host.procedures import manual
 from host.procedures.pointing import ENCODERS, Pointing
 from host.sky.angles import format_degrees
-from host.sky.apparent import equatorial, star_of_apparent
 from host.sky.catalogue import Star
 from host.sky.mount import STEP_ARCSEC
-from host.sky.observed import Observed, observe
+from host.sky.observed import Observed, equatorial, observe, star_of_apparent
 from host.sky.pointfit import TooFewStars, fit
 from host.sky.pointmodel import PointingModel
 from host.sky.pointstars import Sighting
 from host.sky.tracks import DriveRate, GroundTrack, SkyTrack, StarTrack
-from host.sky.visibility import BelowHorizon, Unreachable, check_reachable
+from host.sky.visibility import BelowHorizon, Observatory, Unreachable, check_reachable
 from host.telescope.jobs import Activity, Job, Reason, Refused
-from host.telescope.observatory import Observatory
 
 _FOREVER_S = 1e6
 _REST_COUNTS = 2
@@ -74,7 +72,7 @@ class Drive:
     @property
     def powered(self) -> bool:
         """Whether both axes say that their outputs are on."""
-        return all(power.powered(self.client, axis) for axis in power.AXES)
+        return all(manual.powered(self.client, axis) for axis in manual.BOARDS)
 
     def readings(self) -> tuple[int, int, float]:
         """Encoders of both axes and when they were latched, in seconds; refused before the first frames."""
@@ -260,7 +258,7 @@ class Drive:
             self.stop()
 
     def _look_whether_parked(self) -> None:
-        motions = [self.client.motion(axis) for axis in power.AXES]
+        motions = [self.client.motion(axis) for axis in manual.BOARDS]
         readings = [self.client.position(encoder) for encoder in ENCODERS]
         if None not in motions and None not in readings:
             self.parked = not self.powered and self._at_park()
@@ -278,7 +276,7 @@ class Drive:
         """Give up what the axes do and start this; how `Paddle` moves them, too."""
         if self.job is not None:
             self.job.cancel(f"given up for: {name}")
-        for axis in power.AXES:
+        for axis in manual.BOARDS:
             self.client.forget(axis)
         if activity is not Activity.TRACKING:
             self.logs.status(self.client.now_ns, "HOST", name)
@@ -297,11 +295,11 @@ class Drive:
         """Move with the sky first and look then where that is: no jump, and nothing to catch up with."""
         self.pointing.commanding = True
         rates = self._track_of(self.here()).rates(self.client.now_s)
-        for axis, rate in zip(power.AXES, rates, strict=True):
+        for axis, rate in zip(manual.BOARDS, rates, strict=True):
             yield from self.client.ask(axis, Opcode.TRACK_RATE, rate_q16(rate))
         yield from self.client.wait(_SUMMARY_S)
         end_ns = self.client.now_ns + round(_LOCK_S * 1e9)
-        while self.client.now_ns < end_ns and not all(map(self._locked, power.AXES)):
+        while self.client.now_ns < end_ns and not all(map(self._locked, manual.BOARDS)):
             yield
         self.pointing.track = self._track_of(self.here())
         yield from self.pointing.follow(_FOREVER_S)
@@ -320,7 +318,7 @@ class Drive:
     def power(self, check: bool = True) -> Procedure:
         """Power up unless it is done; the first part of every move."""
         if not self.powered:
-            yield from power.power_on(self.client, check, self.dec_bias_q8)
+            yield from manual.power_on(self.client, check, self.dec_bias_q8)
         self.parked = False
 
     def _ready(self) -> Procedure:
@@ -329,7 +327,7 @@ class Drive:
 
     def _power_off(self) -> Procedure:
         yield from self.settle()
-        yield from power.power_off(self.client)
+        yield from manual.power_off(self.client)
         self.parked = self._at_park()
 
     def _slew(self, track: StarTrack) -> Procedure:
@@ -345,13 +343,13 @@ class Drive:
 
     def settle(self) -> Procedure:
         """Stop both axes and wait until they rest."""
-        for axis in power.AXES:
+        for axis in manual.BOARDS:
             yield from self.client.ask(axis, Opcode.STOP)
         if self.powered:
             yield from self.client.until("stop: both axes at rest", self._at_rest, _REST_S)
 
     def _at_rest(self) -> bool:
-        motions = [self.client.motion(axis) for axis in power.AXES]
+        motions = [self.client.motion(axis) for axis in manual.BOARDS]
         return all(motion is not None and abs(motion.velocity) <= _REST_COUNTS for motion in motions)
 
     # --- refusals ---

@@ -7,8 +7,8 @@ from typing import Final
 from bus.protocol import Opcode, SpeedClass
 from bus.protocol.scales import rate_q16
 from host.client import Procedure
+from host.procedures.autoguide import TICK_S, Shifting
 from host.procedures.manual import AXES
-from host.procedures.shifting import TICK_S, Shifting
 from host.sky.tracks import GUIDE_ARCSEC_S, SIDEREAL_ARCSEC_S, Pulse, SkyTrack
 from host.telescope.drive import Drive
 from host.telescope.jobs import Activity, Job, Reason, Refused, Side

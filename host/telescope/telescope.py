@@ -18,11 +18,11 @@ from host.client import Client, ClientError
 from host.logs.journal import Journal
 from host.procedures.manual import AXES
 from host.sky.observed import Observed
+from host.sky.visibility import Observatory
 from host.telescope.drive import Drive
 from host.telescope.focuser import Focuser
 from host.telescope.house import House
 from host.telescope.jobs import Activity, Job, Reason, Refused, Side
-from host.telescope.observatory import Observatory
 from host.telescope.paddle import Paddle
 from host.telescope.state import Snapshot, axis_state, board_states, focus_state, stale_boards
 

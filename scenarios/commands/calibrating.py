@@ -7,8 +7,7 @@ from pathlib import Path
 import click
 
 from host.sky.pointread import is_run
-from scenarios.commands.parts import need
-from scenarios.options import PATH
+from scenarios.options import PATH, need
 
 READING, SEARCHING, REPLAYING, WRITING = "reading", "searching", "replaying", "writing the report"
 USUAL = {READING: (0.4, 0.3), SEARCHING: (10.0, 2.8), REPLAYING: (0.3, 0.4), WRITING: (2.6, 0.4)}

@@ -7,8 +7,7 @@ from typing import Any
 
 import click
 
-from scenarios.commands.parts import need
-from scenarios.options import PATH, SEED, SPEED, Number, network
+from scenarios.options import PATH, SEED, SPEED, Number, need, network
 
 _FILE_INFO = {
     "FileVersion": "1", "FileRevision": "1", "Description": "schmidt",

@@ -6,10 +6,9 @@ from pathlib import Path
 
 import click
 
-from scenarios.commands.parts import need
 from scenarios.doors.options import DoorOptions, HostOptions, ServeOptions
 from scenarios.doors.table import ON_HOST, ON_NETWORK, asked
-from scenarios.options import PATH, doors, filled, muting
+from scenarios.options import PATH, doors, filled, muting, need
 
 
 @click.command(short_help="Run the boards in real time and open doors to them.")

@@ -9,8 +9,8 @@ from rich.table import Table
 
 from host.logs.files import write_file
 from host.sky.pointfind import Answer, Lack, find
+from host.sky.pointmodel import GEOMETRY, TERMS, TEXTS
 from host.sky.pointread import read
-from host.sky.pointterms import GEOMETRY, TERMS, TEXTS
 from scenarios.run.report.pointing_run import residuals
 
 _WIDE = 120
@@ -74,7 +74,11 @@ def _show(answer: Answer, declared: tuple[str, ...], out: Path) -> None:
     if not console.is_terminal:
         console.width = _WIDE
     errors = f"{answer.before_arcsec:.2f}″ before, {answer.after_arcsec:.2f}″ after, on stars held out"
-    names = " and ".join(_name(each) for each in answer.lacks) or "no term is missing"
+    missing = [
+        " or ".join((each.name, *each.equivalent)) if each.over is None else f"something over the {each.over}"
+        for each in answer.lacks
+    ]
+    names = " and ".join(missing) or "no term is missing"
     console.print(f"{answer.verdict}: {names}; {errors}", soft_wrap=True)
     table = Table("term", "what", "size (95 % interval)", box=None, pad_edge=False)
     for each in answer.model.terms:
@@ -94,9 +98,3 @@ def _show(answer: Answer, declared: tuple[str, ...], out: Path) -> None:
     console.print(
         f"Next: mount: {{pointing_model: {out / 'pointing-model.json'}}} in a scenario", soft_wrap=True
     )
-
-
-def _name(lack: Lack) -> str:
-    if lack.over is not None:
-        return f"something over the {lack.over}"
-    return " or ".join((lack.name, *lack.equivalent))

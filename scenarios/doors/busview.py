@@ -8,7 +8,7 @@ from host.camera.models import Look
 from host.console.views import KEPT, BusState, FaultKind, Node
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.lab.eye import look
-from scenarios.lab.faults.kind import Kind, Parameter
+from scenarios.lab.faults.kind import Parameter
 
 _LOAD_NS = 1_000_000_000
 
@@ -55,11 +55,13 @@ class EmulatedBus:
         return found
 
     def fault_kinds(self) -> list[FaultKind]:
-        """The table of faults."""
-        return [
-            FaultKind(k.name, k.level, k.text, _template(k), "; ".join(map(_said, k.parameters)))
-            for k in self._served.faults.kinds()
-        ]
+        """The table of faults; of arguments that have to be given the names, for a person to complete."""
+        found = []
+        for k in self._served.faults.kinds():
+            needed = (each.name for each in k.parameters if each.default is None or each.name in k.one_of)
+            words = " ".join(f"{name}=" for name in needed)
+            found.append(FaultKind(k.name, k.level, k.text, words, "; ".join(map(_said, k.parameters))))
+        return found
 
     def _running(self) -> list[tuple[int, str]]:
         found = []
@@ -75,12 +77,6 @@ class EmulatedBus:
             return self._served.command(command.split()), False
         except (ValueError, TypeError) as error:
             return str(error), True
-
-
-def _template(kind: Kind) -> str:
-    """The arguments that have to be given, for a person to complete."""
-    needed = [each.name for each in kind.parameters if each.default is None or each.name in kind.one_of]
-    return " ".join(f"{name}=" for name in needed)
 
 
 def _said(p: Parameter) -> str:

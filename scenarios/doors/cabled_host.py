@@ -34,7 +34,9 @@ class CabledHost(Host):
         scenario, model = chosen(options.scenario, network_name=options.network)
         scenario = dated(scenario)
         pc = TelescopePc(scenario, lambda _t, data: self.usb.write(data), devices_in(scenario), options.logs)
-        self.usb = LinkTask(options.usb, lambda: _port(options.usb), self.inbox, said.put)
+        bus = options.usb.startswith("can:")
+        opener = partial(CanPort, options.usb[4:]) if bus else partial(HidPort, options.usb)
+        self.usb = LinkTask(options.usb, opener, self.inbox, said.put)
         self.tasks = [self.usb]
         self.serial: dict[str, SerialLink] = {}
         for board, url in ports.items():
@@ -89,10 +91,6 @@ class CabledHost(Host):
             line = self._said.get()
             self._console.print(line)
             self.pc.journal.status(now_ns, "LINK", line)
-
-
-def _port(spec: str) -> HidPort | CanPort:
-    return CanPort(spec.removeprefix("can:")) if spec.startswith("can:") else HidPort(spec)
 
 
 def _ports(serial: tuple[str, ...]) -> dict[str, str]:

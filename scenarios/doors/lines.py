@@ -1,7 +1,8 @@
 """The five RS232 lines (L3), byte by byte: what has gone over the line until now."""
 
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
+from functools import partial
 
 from boards.silicon.uart import Uart
 from bus.protocol.serial import SAMPLES
@@ -46,6 +47,11 @@ class Feed:
         return bytes(found)
 
 
+def _hear(feeds: list[Feed], start_ns: int, packet: bytes) -> None:
+    for feed in feeds:
+        feed.hear(start_ns, packet)
+
+
 class Lines:
     """All lines of a network by board name; any number of feeds on each."""
 
@@ -53,16 +59,7 @@ class Lines:
         self.uarts = dict(uarts)
         self._feeds: dict[str, list[Feed]] = {name: [] for name in uarts}
         for name, uart in uarts.items():
-            uart.line = self._fan(name)
-
-    def _fan(self, name: str) -> Callable[[int, bytes], None]:
-        feeds = self._feeds[name]
-
-        def hear(start_ns: int, packet: bytes) -> None:
-            for feed in feeds:
-                feed.hear(start_ns, packet)
-
-        return hear
+            uart.line = partial(_hear, self._feeds[name])
 
     def feed(self, name: str) -> Feed:
         """A new listener on the line of board `name`."""

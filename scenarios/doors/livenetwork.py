@@ -56,14 +56,6 @@ class Entry:
         return list(self._apply)
 
 
-BOARD = "board"
-"""Kind of entry that switches a board's supply: `NAME on` or `NAME off`."""
-DEBUG = "debug"
-"""Kind of entry of a debug port: `NAME ` and the bytes."""
-FAULT = "fault"
-"""Kind of entry that starts or clears a fault: `start NAME {arguments}` or `clear NUMBER`."""
-
-
 def frame_text(frame: Frame) -> str:
     """A frame as candump writes it: `211#1101000000000000`."""
     return line(0, frame).rpartition(" ")[2]
@@ -123,9 +115,8 @@ class LiveNetwork:
         self.punctual = Punctuality(self.pacer)
         self.ending = False
         self.steps: Steps | None = None
-        self.entry.register(BOARD, self._switch)
-        self.entry.register(DEBUG, self._debug)
-        self.entry.register(FAULT, self._fault)
+        self.entry.register("command", self._carry_out)
+        self.entry.register("debug", self._debug)
 
     @property
     def now_ns(self) -> int:
@@ -153,40 +144,39 @@ class LiveNetwork:
     def switch(self, board: str, on: bool) -> None:
         """Switch the supply of a board, by name; raises ValueError for one there is not."""
         self.network.board(board)
-        self.entry.enter(BOARD, f"{board} {'on' if on else 'off'}".encode())
+        self.entry.enter("command", f"power {board} {'on' if on else 'off'}".encode())
 
-    def _switch(self, data: bytes) -> None:
-        name, _, state = data.decode().partition(" ")
-        board = self.network.board(name)
-        (board.power_on if state == "on" else board.power_off)(self.now_ns)
+    def _carry_out(self, data: bytes) -> None:
+        match data.decode().split(" ", 3):
+            case ["power", name, state]:
+                board = self.network.board(name)
+                (board.power_on if state == "on" else board.power_off)(self.now_ns)
+            case ["fault", "start", name, arguments]:
+                self.faults.start(name, **json.loads(arguments))
+            case ["fault", "clear", number]:
+                self.faults.clear(int(number))
+            case _:
+                raise ValueError("no such command")
 
     def debug(self, board: str, data: bytes) -> None:
         """Bytes for a board's debug port."""
-        self.entry.enter(DEBUG, board.encode() + b" " + data)
+        self.entry.enter("debug", board.encode() + b" " + data)
 
     def _debug(self, data: bytes) -> None:
         name, _, text = data.partition(b" ")
         self.network.debug[name.decode()].write(self.now_ns, text)
 
     def start_fault(self, name: str, **arguments: Any) -> int:
-        """Start a fault now (`scenarios.lab.faults`); returns its number. Raises FaultError."""
+        """Start a fault now (`scenarios.lab.faults`); returns its number. Raises ValueError."""
         values = self.faults.check(name, arguments)
-        self.entry.enter(FAULT, f"start {name} {json.dumps(values)}".encode())
+        self.entry.enter("command", f"fault start {name} {json.dumps(values)}".encode())
         return self.faults.running[-1].number
 
     def clear_fault(self, number: int) -> None:
-        """End a fault now; raises FaultError when it is not on."""
+        """End a fault now; raises ValueError when it is not on."""
         if all(each.number != number for each in self.faults.running):
             self.faults.clear(number)  # says what is on
-        self.entry.enter(FAULT, f"clear {number}".encode())
-
-    def _fault(self, data: bytes) -> None:
-        word, _, rest = data.decode().partition(" ")
-        if word == "clear":
-            self.faults.clear(int(rest))
-            return
-        name, _, arguments = rest.partition(" ")
-        self.faults.start(name, **json.loads(arguments))
+        self.entry.enter("command", f"fault clear {number}".encode())
 
     def command(self, words: Sequence[str]) -> str:
         """Carry out `power BOARD on|off`, `fault start NAME ARGUMENT=VALUE ...` or `fault clear NUMBER`; its

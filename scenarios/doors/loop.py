@@ -9,6 +9,7 @@ import gc
 import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
 
@@ -65,39 +66,32 @@ def _back(before: dict[int, int]) -> None:
 _STATUS_S = 1.0  # Wall time between two status lines. ASSUMPTION.
 
 
+@dataclass
 class Loop:
-    """Looks at the doors before every slice and says once a second how things stand."""
+    """Looks at the doors before every slice, says once a second how things stand. show: takes that line."""
 
-    def __init__(
-        self,
-        served: LiveNetwork,
-        keepers: Sequence[Keeper],
-        console: Console,
-        show: Callable[[str], None],
-        duration_s: float | None,
-        recording: Recording | None,
-    ) -> None:
-        self._served = served
-        planes = [each for each in keepers if served.steps is not None and isinstance(each.door, ControlDoor)]
-        self._keepers = [each for each in keepers if each not in planes]
-        self._planes = planes
-        self._console = console
-        self._show = show
-        self._recording = recording
-        self._end_ns: int | None = None
-        self._slow = False
-        self._duration_s = duration_s
+    served: LiveNetwork
+    keepers: Sequence[Keeper]
+    console: Console
+    show: Callable[[str], None]
+    duration_s: float | None
+    recording: Recording | None
+    _end_ns: int | None = None
+    _slow: bool = False
 
     def run(self) -> None:
         """Until somebody ends it."""
         gc.collect()
         gc.freeze()  # a collection that walks the whole network makes a tick late
-        served = self._served
+        served = self.served
+        stepped = served.steps is not None
+        self._planes = [each for each in self.keepers if stepped and isinstance(each.door, ControlDoor)]
+        self._keepers = [each for each in self.keepers if each not in self._planes]
         now_s = perf_counter()
         self._next_s = now_s + _STATUS_S
         self._flush_s = self._next_s + _STATUS_S / 2
         self._second = (now_s, served.now_ns, 0)
-        self._end_s = None if self._duration_s is None else now_s + self._duration_s
+        self._end_s = None if self.duration_s is None else now_s + self.duration_s
         try:
             if served.steps is None:
                 served.pacer.run(each_slice=self._slice)
@@ -111,7 +105,7 @@ class Loop:
 
     def _slice(self) -> bool:
         """Between two slices; True when it is over."""
-        served = self._served
+        served = self.served
         served.entry.running = False
         now_ns = served.now_ns
         for keeper in self._keepers:
@@ -120,10 +114,10 @@ class Loop:
         if now_s >= self._next_s:
             self._next_s = now_s + _STATUS_S
             pace = self._keeping_up(now_s)
-            self._show(f"{self.text()}, {'paused' if served.pacer.paused else f'{pace:.2f} times real time'}")
-        elif now_s >= self._flush_s and self._recording is not None:  # another slice: half a millisecond each
+            self.show(f"{self.text()}, {'paused' if served.pacer.paused else f'{pace:.2f} times real time'}")
+        elif now_s >= self._flush_s and self.recording is not None:  # another slice: half a millisecond each
             self._flush_s = now_s + _STATUS_S
-            self._recording.flush()
+            self.recording.flush()
         served.entry.running = True
         return self._over(now_s)
 
@@ -132,34 +126,34 @@ class Loop:
         for keeper in self._planes:
             if isinstance(keeper.door, ControlDoor):
                 keeper.door.wait(timeout_s)
-            keeper.poll(self._served.now_ns)
+            keeper.poll(self.served.now_ns)
         return self._over(perf_counter())
 
     def _over(self, now_s: float) -> bool:
-        return self._served.ending or (self._end_s is not None and now_s >= self._end_s)
+        return self.served.ending or (self._end_s is not None and now_s >= self._end_s)
 
     def _keeping_up(self, now_s: float) -> float:
         """The pace of the last second; said when the machine is too slow, and when it no longer is."""
-        served = self._served
+        served = self.served
         before_s, before_ns, slips = self._second
         self._second = (now_s, served.now_ns, served.pacer.slips)
         pace = (served.now_ns - before_ns) * 1e-9 / max(now_s - before_s, 1e-9)
         slow = served.pacer.slips > slips
         if slow and not self._slow:
             wanted = served.pacer.speed
-            self._console.print(
+            self.console.print(
                 f"this machine cannot keep up: {pace:.2f} of {wanted:g} times real time. Time runs slower. "
                 "Boards lose no frame. What clients send too fast is refused and counted."
             )
         elif self._slow and not slow:
-            self._console.print(f"keeping up again at {pace:.2f} times real time")
+            self.console.print(f"keeping up again at {pace:.2f} times real time")
         self._slow = slow
         return pace
 
     def text(self) -> str:
         """One line of how things stand, or stood when the loop ended. Time given up is what the wall had of
         it and the boards did not; in steps, or paused, nobody wants any."""
-        served = self._served
+        served = self.served
         words = [f"{(self._end_ns or served.now_ns) * 1e-9:.1f} s simulated"]
         if served.pacer.slips:
             words.append(f"{served.pacer.slipped_s:.1f} s given up on a machine too slow")

@@ -1,7 +1,7 @@
 """The doors of `schmidt serve`, as its options ask for them, and the words by which one attaches to each."""
 
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from scenarios.doors.clients import address
 from scenarios.doors.door import Door
@@ -23,7 +23,7 @@ def attached(name: str, boards: Sequence[str]) -> Attached:
     """By a door's name, such as `--serial tcp:7000`. boards: those with an RS232 line, in their order."""
     option, _, spec = name.partition(" (")[0].partition(" ")  # without what the door has added
     word, _, rest = spec.partition(":")
-    kinds: tuple[DoorKind[Any], ...] = (*ON_NETWORK, *ON_HOST)
+    kinds: tuple[DoorKind, ...] = (*ON_NETWORK, *ON_HOST)
     forms = next(kind.attach for kind in kinds if f"--{kind.name}" == option)
     form = forms.get(word, forms.get("", "{spec}"))
     given = {"spec": spec, "word": word, "rest": rest}

@@ -9,9 +9,8 @@ from bus.protocol import Device, MotionFlag, Opcode, SpeedClass, unpack_target
 from host.client import TICK_NS, Client, ClientError, Procedure
 from host.link import HidLink
 from host.logs.journal import Journal
-from host.procedures.manual import AXES
+from host.procedures.manual import AXES, powered
 from host.procedures.pointing import REACH
-from host.procedures.power import powered
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.doors.usb import UsbFull
 

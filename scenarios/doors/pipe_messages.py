@@ -2,12 +2,11 @@
 
 The host has a process of its own, as it has on the telescope. Browsers and HTTP would otherwise hold Python's
 lock when a tick is due. Nothing but these values crosses; the emulator's side is `host_door`, the host's
-`piped_host`. Beside the records below, tuples of a word and what belongs to it:
+`piped_host`.Beside the records below there are tuples of a word and what belongs to it.
 
-- from the host: `report` and 64 bytes for the gateway; `said` and a line for the user; `wish`, its number and
-  a command of the control plane; `opened` (doors, error), once: the doors are open, or why not;
-- to the host: `done`, the wish's number, what became of it, whether it was refused; `close`: hang up, write
-  the logs, answer `Taken` and end.
+From the host come `report` (64 bytes for the gateway), `said` (a line for the user) and `opened` (doors,
+error). A `wish` has a number and a command of the control plane. To the host go `done` (the wish's number,
+its answer, whether it was refused) and `close`: hang up, write the logs, answer `Taken` and end.
 """
 
 from pathlib import Path

@@ -114,12 +114,6 @@ class PipedHost(Host):
 
     def run(self) -> None:
         """Until told to close, or nobody is there any more."""
-        try:
-            self.open()
-        except (OSError, ValueError) as error:
-            self._send(("opened", [], str(error)))
-            self.close()
-            return
         self._send(("opened", self._told(), ""))
         try:
             while not self._pipe.poll(_LOOK_S) or self._take(self._pipe.recv()):
@@ -173,10 +167,14 @@ def main(number: int) -> None:
             settings = pipe.recv()
         except EOFError:
             return
+        side = None
         try:
             side = PipedHost(pipe, settings)
+            side.open()
         except (OSError, ValueError) as error:
             with suppress(ConnectionError):
                 pipe.send(("opened", [], str(error)))
+            if side is not None:
+                side.close()
             return
         side.run()

@@ -208,6 +208,9 @@ class _Wiring:
         )
         return FocusBoard(self.of(device), pins, settings)
 
+    def gateway(self, device: Device) -> Board:
+        return GatewayBoard(self.of(device))
+
     def display(self, device: Device) -> Board:
         positions = (int(Device.POSITION_RA), int(Device.POSITION_DEC))
         return DisplayBoard(self.of(device), positions, int(Device.FOCUS))
@@ -222,16 +225,6 @@ class _Wiring:
             raise ValueError(str(error)) from None
         except (Exception, SystemExit) as error:
             raise board_error(board, device.name, 0, error) from None
-
-
-_MAKERS: tuple[tuple[str, Callable[[_Wiring, Device], Board]], ...] = (
-    ("AXIS", _Wiring.axis),
-    ("POSITION", _Wiring.position),
-    ("MOTOR", _Wiring.motor),
-    ("GATEWAY", lambda wiring, device: GatewayBoard(wiring.of(device))),
-    ("FOCUS", _Wiring.focus),
-    ("DISPLAY", _Wiring.display),
-)
 
 
 _AVR = ".elf"
@@ -261,8 +254,8 @@ def build(config: NetworkConfig | None, plant: Plant, seed: int, humidity: float
         if kind_of(device) is not None:
             boards[device.name] = wiring.declared(device)
             continue
-        make = next(maker for prefix, maker in _MAKERS if device.name.startswith(prefix))
-        boards[device.name] = wiring.binary(device) or make(wiring, device)
+        make = getattr(wiring, device.name.partition("_")[0].lower())
+        boards[device.name] = wiring.binary(device) or make(device)
     for device_type in SPARE_TYPES[: max(0, size - len(devices))]:
         name = f"MOTOR_{device_type:02X}"
         encoder = plant.ra.tachometer_b if device_type & 1 else plant.ra.tachometer_a

@@ -9,6 +9,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+import yaml
+
 from boards import __file__ as package
 from boards.auxiliary.firmware import AuxiliaryBoard
 from boards.core import Board
@@ -24,25 +26,15 @@ from scenarios.language.model import Scenario
 
 BOARD_A = 0.15
 """Of one board with its transceiver at 24 V, ASSUMPTION."""
-CHANNELS: dict[str, tuple[tuple[str, ...], ...]] = {
-    "POWER_DRIVES": (
-        ("AXIS_RA",), ("AXIS_DEC",), ("POSITION_RA",), ("POSITION_DEC",), ("MOTOR_RA_A", "MOTOR_RA_B"),
-        ("MOTOR_DEC_A", "MOTOR_DEC_B"), (), (),
-    ),
-    "POWER_ROOM": (
-        ("FOCUS",), ("DISPLAY",), ("AUXILIARY_RA", "AUXILIARY_DEC"), ("WEATHER_MAST",), ("WEATHER_DOME",),
-        ("DOME",), (), (),
-    ),
-}  # fmt: skip
-"""Boards by relay 1..8, ASSUMPTION. The gateway lives on USB; the power boards hang on no relay."""
+CHANNELS: dict[str, list[list[str]]] = yaml.safe_load(
+    Path(__file__).with_name("supplies.yaml").read_text(encoding="utf-8")
+)
 
 
 class Supply:
     """What one power board measures and switches: the boards on its relays, and what current they take."""
 
-    def __init__(
-        self, plant: Plant, boards: Mapping[str, Board], channels: tuple[tuple[str, ...], ...]
-    ) -> None:
+    def __init__(self, plant: Plant, boards: Mapping[str, Board], channels: list[list[str]]) -> None:
         self._plant = plant
         self._boards = boards
         self._channels = channels

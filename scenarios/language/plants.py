@@ -31,7 +31,11 @@ def plant_model(given: dict[str, Any], beside: Path) -> PlantModel:
                 model = plants.with_effects(model, axis, (*getattr(model.axes, axis).effects, *extra))
         model = plants.with_mount_errors(model, given.get("mount", True))
         for path, value in given.get("overrides", {}).items():
-            model = plants.with_value(model, path, _number(path, value), "scenario override")
+            try:
+                number = float(value)
+            except ValueError:
+                raise ScenarioError(f"plant: overrides: {path}: {value!r} is no number") from None
+            model = plants.with_value(model, path, number, "scenario override")
         if given.get("overrides"):
             model = plants.loads(plants.dumps(model), "with its overrides")  # the bounds hold for them, too
             _check_friction(model)
@@ -40,13 +44,6 @@ def plant_model(given: dict[str, Any], beside: Path) -> PlantModel:
     except (ValueError, TypeError, KeyError, ArithmeticError) as error:
         raise ScenarioError(f"plant: {' '.join(str(error).split())}") from None
     return model
-
-
-def _number(path: str, value: Any) -> float:
-    try:
-        return float(value)
-    except ValueError:
-        raise ScenarioError(f"plant: overrides: {path}: {value!r} is no number") from None
 
 
 def _check_friction(model: PlantModel) -> None:

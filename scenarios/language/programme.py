@@ -8,7 +8,7 @@ from typing import Any
 from bus.protocol import Device, Opcode
 from host.client import Client, ClientError, Procedure
 from host.logs.journal import AsciiLogs
-from host.procedures import dome, focus, manual, power
+from host.procedures import dome, focus, manual
 from host.procedures.autoguide import Guided, Guiding, autoguide
 from host.procedures.pointing import CLASSES, Pointing
 from host.procedures.pointing_run import Eye, Visit, directions, visit
@@ -125,9 +125,9 @@ class Programme:
         return [before for before in range(index) if steps[before].after is None]
 
     def _holds(self, condition: str) -> bool:
-        axes = [self._client.motion(axis) for axis in power.AXES]
+        axes = [self._client.motion(axis) for axis in manual.BOARDS]
         conditions: dict[str, Callable[[], bool]] = {
-            "powered": lambda: all(power.powered(self._client, axis) for axis in power.AXES),
+            "powered": lambda: all(manual.powered(self._client, axis) for axis in manual.BOARDS),
             "on_target": lambda: self.pointing.on_target,
             "tracking": lambda: self.pointing.tracking,
             "stopped": lambda: all(motion is not None and not motion.velocity for motion in axes),
@@ -176,7 +176,7 @@ class Programme:
         given = step.arguments
         match step.action:
             case "power_on":
-                return power.power_on(client, given.get("health_check", True))
+                return manual.power_on(client, given.get("health_check", True))
             case "goto":
                 star = target_of(given["target"], step.where)
                 self._note(index, star=star)
@@ -206,7 +206,7 @@ class Programme:
             case "stop":
                 return manual.stop(client, given.get("axis", "both"))
             case "power_off":
-                return power.power_off(client)
+                return manual.power_off(client)
             case "focus":
                 goal, procedure = _focus(client, given)
                 self._note(index, focus_goal=goal)

@@ -3,7 +3,10 @@
 import math
 import re
 from collections.abc import Mapping
+from pathlib import Path
 from typing import NamedTuple
+
+import yaml
 
 
 class Quantity(NamedTuple):
@@ -18,24 +21,9 @@ class Quantity(NamedTuple):
     units: Mapping[str, float]
 
 
-_UM = 1 / 6.25
-"""Half steps: 6.25 µm each (P11)."""
 QUANTITIES = {
-    "time": Quantity(
-        "s", 1e7, {"ns": 1e-9, "us": 1e-6, "µs": 1e-6, "ms": 1e-3, "s": 1.0, "min": 60.0, "h": 3600.0}
-    ),
-    "angle": Quantity(
-        "arcsec", 1e10, {"mas": 1e-3, "arcsec": 1.0, "″": 1.0, "arcmin": 60.0, "deg": 3600.0, "°": 3600.0}
-    ),
-    "rate": Quantity(
-        "arcsec/s", 1e10, {"arcsec/s": 1.0, "″/s": 1.0, "arcmin/s": 60.0, "deg/s": 3600.0, "°/s": 3600.0}
-    ),
-    "fraction": Quantity("1", 1e6, {"%": 0.01}),
-    "focus": Quantity("half steps", 1e6, {"half steps": 1.0, "half step": 1.0, "um": _UM, "µm": _UM}),
-    "pressure": Quantity("hPa", 1e4, {"hPa": 1.0}),
-    "temperature": Quantity("°C", 1e3, {"degC": 1.0, "°C": 1.0}),
-    "length": Quantity("m", 1e4, {"m": 1.0}),
-    "bitrate": Quantity("bit/s", 1e12, {"kbit/s": 1e3, "Mbit/s": 1e6}),
+    name: Quantity(**row)
+    for name, row in yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text(encoding="utf-8")).items()
 }
 BASE = {name: quantity.base for name, quantity in QUANTITIES.items()}
 _FORM = re.compile(r"^\s*([+\-−]?(?:\d+\.?\d*|\.\d+)(?:[eE][+\-]?\d+)?)\s*(\S.*?)?\s*$")

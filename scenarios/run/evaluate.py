@@ -1,13 +1,15 @@
-"""Expectations against what a run left: one function per kind, in a table.
+"""Expectations against what a run left: one function per kind, and the table evaluate.yaml.
 
 Schema and page are made from the table (`docs/generate/language.py`); nothing else knows a kind.
 """
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+import yaml
 
 from host.logs import traces
 from scenarios.language.model import Expectation
@@ -161,31 +163,11 @@ class Kind(NamedTuple):
         return BASE[self.limit] if self.limit else "1"
 
 
-def _counter(name: str, text: str, limit: str = "") -> Kind:
-    return Kind(lambda outcome, _given: float(outcome.counters[name]), limit, text)
+def _kind(name: str, row: dict[str, Any]) -> Kind:
+    """A figure that has no function of its name is a counter of the run."""
+    measure = globals().get(name) or (lambda outcome, _given: float(outcome.counters[name]))
+    return Kind(measure, row.get("limit", ""), row["text"], tuple(row.get("steps", ())), row.get("words", {}))
 
 
-KINDS: dict[str, Kind] = {
-    "pointing_error": Kind(
-        pointing_error, "angle", "telescope less the star's observed place", ("track",),
-        {"axis": {"sky": "the angle between them", "ra": "", "dec": ""},
-         "source": {"truth": "the plant", "encoder": "what the host read"}},
-    ),
-    "tracking_rate_error": Kind(
-        tracking_rate_error, "rate", "rate of an axis less the rate it should have", ("track", "set_rate"),
-        {"axis": {"ra": "", "dec": ""},
-         "source": {"truth": "the plant", "counts_5ms": "velocity counts of single 5 ms samples",
-                    "mean_1s": "their means over 1 s"}},
-    ),
-    "guiding_error": Kind(
-        guiding_error, "angle", "the star less its place in the first exposure, as the guide camera saw it",
-        ("autoguide",), {"axis": {"sky": "both together", "ra": "on the sky", "dec": ""}},
-    ),
-    "focus_error": Kind(focus_error, "focus", "true focus position less the commanded one", ("focus",)),
-    "bus_load": _counter("bus_load", "mean load of the CAN bus", "fraction"),
-    "overruns": _counter("overruns", "lost interrupts of all boards"),
-    "frame_errors": _counter("frame_errors", "error frames on the bus"),
-    "error_log_entries": _counter("error_log_entries", "lines in `errors.log`"),
-    "steps_completed": _counter("steps_completed", "steps that ended as they should"),
-    "real_time_factor": _counter("real_time_factor", "simulated over wall time (depends on the machine)"),
-}  # fmt: skip
+_ROWS: dict[str, Any] = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text(encoding="utf-8"))
+KINDS = {name: _kind(name, row) for name, row in _ROWS.items()}

@@ -13,32 +13,17 @@ from math import isfinite
 from pathlib import Path
 from typing import Any, NamedTuple, TextIO
 
+import yaml
+
 from bus.protocol.page import DBC_PATH
 from host.logs.traces import batches
 from plant.yamltext import read_text
 
 SUMMARY = "summary.json"
-_LINE_LOGS = {
-    "commands": ("utc", "t_s", "node", "command", "result"),
-    "errors": ("utc", "t_s", "where", "what"),
-}
 NUMBER = {"type": "number"}
 TEXT = {"type": "string"}
-_FLAG = {"type": "boolean"}
-_OF_SUMMARY: dict[str, tuple[str, dict[str, dict[str, Any]]]] = {
-    "steps": (
-        "start_s", {"name": TEXT, "action": TEXT, "start_s": NUMBER, "end_s": NUMBER, "failed": TEXT},
-    ),
-    "faults": (
-        "first_s", {"name": TEXT, "arguments": TEXT, "at_s": NUMBER, "first_s": NUMBER, "on": TEXT,
-                    "may_not_act": _FLAG},
-    ),
-    "expectations": (
-        "", {"name": TEXT, "passed": _FLAG, "value": NUMBER, "limit": NUMBER, "unit": TEXT, "reason": TEXT},
-    ),
-}  # fmt: skip
-"""Lists of summary.json: the field that is their time, if any, and their fields. Foxglove wants one type for
-each, so arguments, which every kind of fault has its own of, are JSON."""
+_TABLE: dict[str, Any] = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text(encoding="utf-8"))
+_LINE_LOGS: dict[str, list[str]] = _TABLE["logs"]
 
 
 class Source(NamedTuple):
@@ -143,11 +128,12 @@ def _lines(path: Path) -> Iterator[Entry]:
 def _of_summary(summary: dict[str, Any]) -> list[Iterator[Entry]]:
     """Steps when they begin, faults when they first act (or should have), verdicts at the end."""
     found = []
-    for name, (when, fields) in _OF_SUMMARY.items():
-        source = Source(f"/{'verdicts' if name == 'expectations' else name}", fields)
+    for name, row in _TABLE["summary"].items():
+        fields = {field: {"type": kind} for kind, names in row["fields"].items() for field in names}
+        source = Source(f"/{row['topic']}", fields)
         entries = []
         for each in summary.get(name, []):
-            times = (each.get(when), each.get("at_s"), summary["simulated_s"])
+            times = (each.get(row["time"]), each.get("at_s"), summary["simulated_s"])
             t_s = next(time for time in times if time is not None)
             arguments = {"arguments": json.dumps(each["arguments"])} if "arguments" in each else {}
             entries.append(Entry(round(t_s * 1e9), source, each | arguments))

@@ -10,8 +10,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from host.logs.canformats import FORMATS, convert
-from host.logs.files import LogError, write_file
+from host.logs.files import FORMATS, LogError, convert, write_file
 from plant.model import PlantModel
 from scenarios.lab.muted import Feed
 from scenarios.lab.session import Session

@@ -76,11 +76,11 @@ def test_one_entry_more_is_another_digest(tmp_path: Path) -> None:
         "5 can9 00",
         "5 usb zz",
         "x usb 00",
-        "5 board FF",
+        "5 command FF",
         "5 can0 ",
         "5 can0 00",
         "9 usb\n5 usb",
-        "5 fault 78",
+        "5 command 78",
     ],
 )
 def test_a_journal_that_was_tampered_with_is_one_line(tmp_path: Path, line: str) -> None:

@@ -23,7 +23,7 @@ from host.client import REPLY_TIMEOUT_NS, TICK_NS, TRIES, Client, ClientError, P
 from host.link import HidLink
 from host.logs.files import LogError
 from host.logs.journal import AsciiLogs
-from host.procedures.power import health_check
+from host.procedures.manual import health_check
 from host.serial_link import SerialLink
 
 Answer = Callable[[int, Frame], list[Frame]]

@@ -13,7 +13,7 @@ from rich.console import Console
 from bus.can.frame import Frame
 from bus.protocol import Device, Opcode, pack_command
 from bus.protocol.report import pack_report, unpack_report
-from host.links.ports import CanPort, LinkTask, Port
+from host.links.ports import CanPort, LinkTask
 from scenarios.doors.cabled_host import CabledHost
 from scenarios.doors.hid_unix import UnixDoor
 from scenarios.doors.options import HostOptions
@@ -22,7 +22,7 @@ from scenarios.lab.prepare import chosen
 from tests.host.telescope.conftest import Rig
 
 
-class Flaky(Port):
+class Flaky:
     """Gives one byte, then breaks."""
 
     def __init__(self, breaks: bool) -> None:
@@ -53,7 +53,7 @@ def until(condition: Callable[[], bool], limit_s: float = 10.0) -> None:
 
 
 def test_H1_a_broken_link_is_said_once_opened_again_and_stops_nobody(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("host.links.task.RETRY_S", 0.05)
+    monkeypatch.setattr("host.links.ports.RETRY_S", 0.05)
     inbox: SimpleQueue[tuple[str, bytes]] = SimpleQueue()
     said: SimpleQueue[str] = SimpleQueue()
     bad = LinkTask("bad", lambda: Flaky(breaks=True), inbox, said.put)

@@ -11,8 +11,7 @@ from host.console.shell import OLD, Shell, box, button, stale, table
 from host.procedures.pointing import ENCODERS
 from host.sky.catalogue import STARS, star
 from host.sky.mount import CENTRE_STEPS, STEP_ARCSEC
-from host.sky.pointmodel import PointingModel
-from host.sky.pointterms import TEXTS
+from host.sky.pointmodel import TEXTS, PointingModel
 from host.telescope.state import AXES
 
 

@@ -8,10 +8,9 @@ from host.console.shell import Shell, box, button, seldom
 from host.console.skymap import SIZE, label, svg
 from host.procedures.dome import BOARD as DOME_BOARD
 from host.sky.angles import format_degrees, parse_declination, parse_right_ascension
-from host.sky.apparent import apparent_of_observed, star_of_apparent
 from host.sky.catalogue import Star
 from host.sky.listed import listed
-from host.sky.observed import Observed
+from host.sky.observed import Observed, apparent_of_observed, star_of_apparent
 from host.telescope import Observatory
 
 

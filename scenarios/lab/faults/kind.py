@@ -16,10 +16,6 @@ Type = Literal[
 """A word of the network, a number, or a quantity of `scenarios.language.units`."""
 
 
-class FaultError(ValueError):
-    """A fault that cannot be: one line of what is wrong and what would be right."""
-
-
 @dataclass(frozen=True)
 class Parameter:
     """One argument of a fault.
@@ -46,11 +42,11 @@ class Parameter:
         return BASE[self.quantity] if self.quantity else ""
 
     def read(self, value: Any, known: Mapping[str, tuple[str, ...]]) -> Any:
-        """A value as given, in base units; raises FaultError. known: the words of the network by type."""
+        """A value as given, in base units; raises ValueError. known: the words of the network by type."""
         if self.type in known:
             words = known[self.type]
             if value not in words:
-                raise FaultError(f"{self.name}: {value!r} is not known; use one of {', '.join(words)}")
+                raise ValueError(f"{self.name}: {value!r} is not known; use one of {', '.join(words)}")
             return value
         if self.type == "nodes":
             return self._nodes(value, known["node"])
@@ -60,7 +56,7 @@ class Parameter:
         given = value.split(",") if isinstance(value, str) else list(value)
         wrong = [each for each in given if each not in words]
         if wrong or not given or len(set(given)) != len(given):
-            raise FaultError(f"{self.name}: a list of different boards out of {', '.join(words)}")
+            raise ValueError(f"{self.name}: a list of different boards out of {', '.join(words)}")
         return given
 
     def _number(self, value: Any) -> float | int:
@@ -77,13 +73,13 @@ class Parameter:
             else:
                 number = float(value)
         except UnitError as error:
-            raise FaultError(f"{self.name}: {error}") from None
+            raise ValueError(f"{self.name}: {error}") from None
         except (TypeError, ValueError, OverflowError):
-            raise FaultError(f"{self.name}: {value!r} is no number{self._range()}") from None
+            raise ValueError(f"{self.name}: {value!r} is no number{self._range()}") from None
         if not (self.low is None or self.low <= number) or not (self.high is None or number <= self.high):
-            raise FaultError(f"{self.name}: {value} is out of range{self._range()}")
+            raise ValueError(f"{self.name}: {value} is out of range{self._range()}")
         if number != number:
-            raise FaultError(f"{self.name}: {value} is no number{self._range()}")
+            raise ValueError(f"{self.name}: {value} is no number{self._range()}")
         return number
 
     def _range(self) -> str:
@@ -123,22 +119,22 @@ class Kind:
     """At least one of these has to be given."""
 
     def arguments(self, given: Mapping[str, Any], known: Mapping[str, tuple[str, ...]]) -> dict[str, Any]:
-        """All arguments in base units, defaults filled in; raises FaultError."""
+        """All arguments in base units, defaults filled in; raises ValueError."""
         names = [each.name for each in self.parameters]
         for name in given:
             if name not in names:
-                raise FaultError(f"{self.name}: unknown argument {name!r}; use {', '.join(names) or 'none'}")
+                raise ValueError(f"{self.name}: unknown argument {name!r}; use {', '.join(names) or 'none'}")
         if self.one_of and not set(self.one_of) & set(given):
-            raise FaultError(f"{self.name} needs a {' or an '.join(self.one_of)}")
+            raise ValueError(f"{self.name} needs a {' or an '.join(self.one_of)}")
         values: dict[str, Any] = {}
         for each in self.parameters:
             if each.name in given:
                 try:
                     values[each.name] = each.read(given[each.name], known)
-                except FaultError as error:
-                    raise FaultError(f"{self.name}: {error}") from None
+                except ValueError as error:
+                    raise ValueError(f"{self.name}: {error}") from None
             elif each.default is None:
-                raise FaultError(f"{self.name}: {each.name} is missing ({each.text})")
+                raise ValueError(f"{self.name}: {each.name} is missing ({each.text})")
             elif each.default != "":
                 values[each.name] = each.default
         return values

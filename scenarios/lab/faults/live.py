@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from bus.time import generator
-from scenarios.lab.faults.kind import Active, FaultError, Kind
+from scenarios.lab.faults.kind import Active, Kind
 from scenarios.lab.faults.place import Place
 from scenarios.lab.faults.table import BY_NAME, KINDS
 from scenarios.lab.layers import Evidence
@@ -52,16 +52,16 @@ class Faults:
         return [running for running, _ in self._active.values()]
 
     def check(self, name: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
-        """Arguments in base units; raises FaultError with one line."""
+        """Arguments in base units; raises ValueError with one line."""
         kind = BY_NAME.get(name)
         if kind is None:
-            raise FaultError(f"no fault is called {name!r}; use one of {', '.join(BY_NAME)}")
+            raise ValueError(f"no fault is called {name!r}; use one of {', '.join(BY_NAME)}")
         return kind.arguments(arguments, self.place.known())
 
     def start(self, name: str, **arguments: Any) -> int:
         """Start a fault now; numbers in base units, or text with a unit. Returns its number for `clear`.
 
-        Raises FaultError, in one line, for what cannot be; then nothing has changed.
+        Raises ValueError, in one line, for what cannot be; then nothing has changed.
         """
         values = self.check(name, arguments)
         evidence = Evidence(name, values, self._network.queue.now_ns)
@@ -78,15 +78,15 @@ class Faults:
         return number
 
     def clear(self, number: int) -> None:
-        """End a fault now. Raises FaultError when it is not on."""
+        """End a fault now. Raises ValueError when it is not on."""
         if number not in self._active:
             on = ", ".join(f"{each.number} {each.name}" for each in self.running) or "none"
-            raise FaultError(f"no fault has the number {number}; on: {on}")
+            raise ValueError(f"no fault has the number {number}; on: {on}")
         _, active = self._active.pop(number)
         active.clear(self._network.queue.now_ns)
 
     def schedule(self, faults: Iterable[Fault]) -> None:
-        """Those of a scenario, at their times. Raises FaultError."""
+        """Those of a scenario, at their times. Raises ValueError."""
         for index, fault in enumerate(faults):
             _Planned(self, index, fault)
 
@@ -114,8 +114,8 @@ class _Planned:
     def _start(self, _t_ns: int) -> None:
         try:
             self._number = self._faults._start(self._values, self._stream, self._evidence)
-        except FaultError as error:
-            raise FaultError(f"{self._evidence.where}: {error}") from None
+        except ValueError as error:
+            raise ValueError(f"{self._evidence.where}: {error}") from None
 
     def _end(self, _t_ns: int) -> None:
         if self._number >= 0:

@@ -6,7 +6,6 @@ from typing import Any
 from boards.core import Board, PeriodicBoard
 from boards.core.halt import Halt
 from bus.can import Frame, Port
-from scenarios.lab.faults.kind import FaultError
 from scenarios.lab.faults.place import Place
 from scenarios.lab.layers import Evidence, Laid, Stacks, words
 
@@ -166,7 +165,7 @@ class LateInterrupts(Hang):
     def __init__(self, place: Place, given: Mapping[str, Any], t_ns: int) -> None:
         self._masked_ns, self._every_ns = round(given["masked"] * 1e9), round(given["every"] * 1e9)
         if self._masked_ns >= self._every_ns:
-            raise FaultError("late_interrupts: masked has to be shorter than every")
+            raise ValueError("late_interrupts: masked has to be shorter than every")
         self._queue = place.network.queue
         super().__init__(place, given, t_ns)
 
@@ -206,7 +205,7 @@ class Drift:
         try:
             self._board.oscillator.pull(t_ns, ppm)
         except ValueError as error:
-            raise FaultError(str(error)) from None
+            raise ValueError(str(error)) from None
         self._board.timer.retime()
 
     def clear(self, t_ns: int) -> None:

@@ -11,7 +11,6 @@ from bus.can.sampling import BitTiming
 from bus.can.stuck import StuckDominant
 from bus.can.wire import Disturb
 from bus.protocol import COMMAND_BASE, MEASUREMENT_BASE, REPLY_BASE
-from scenarios.lab.faults.kind import FaultError
 from scenarios.lab.faults.place import Place
 from scenarios.lab.layers import Errors, Laid, words
 
@@ -121,10 +120,10 @@ class Cut:
     def __init__(self, place: Place, given: Mapping[str, Any], t_ns: int) -> None:
         wire = place.network.wire
         if len(given["nodes"]) >= len(place.network.boards):
-            raise FaultError("partition: nodes: some boards, not all of them")
+            raise ValueError("partition: nodes: some boards, not all of them")
         ports = [place.board(name).port for name in given["nodes"]]
         if any(port._wire is not wire for port in ports):
-            raise FaultError("partition: nodes: one of them is cut off already")
+            raise ValueError("partition: nodes: one of them is cut off already")
         self._ports, self._evidence = ports, place.evidence
         self._partition = Partition(wire, ports, t_ns, self._parted)
 

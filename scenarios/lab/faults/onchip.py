@@ -5,7 +5,6 @@ from typing import Any
 
 from bus.can import Frame
 from bus.protocol import COMMAND_BASE, REPLY_BASE
-from scenarios.lab.faults.kind import FaultError
 from scenarios.lab.faults.onboard import Hears
 from scenarios.lab.faults.place import Place
 from scenarios.lab.layers import Laid, Staged
@@ -63,7 +62,7 @@ class SerialNoise(Laid):
     def __init__(self, place: Place, given: Mapping[str, Any], _t_ns: int) -> None:
         uarts = place.network.uarts
         if given["node"] not in uarts:
-            raise FaultError(f"serial_noise: node: no RS232; use one of {', '.join(uarts)}")
+            raise ValueError(f"serial_noise: node: no RS232; use one of {', '.join(uarts)}")
         self._random, self._probability = place.random, given["probability"]
         self._evidence, self._node = place.evidence, given["node"]
         super().__init__(place.layers, uarts[given["node"]], "sink")

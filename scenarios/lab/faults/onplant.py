@@ -5,7 +5,7 @@ from typing import Any
 
 from bus.units import ARCSEC_PER_RAD
 from plant.kernels import layout as at
-from scenarios.lab.faults.kind import Active, FaultError
+from scenarios.lab.faults.kind import Active
 from scenarios.lab.faults.place import Place
 from scenarios.lab.layers import AXES, Staged, Watched
 
@@ -28,7 +28,7 @@ class EmergencyStop:
     def __init__(self, place: Place, _given: Mapping[str, Any], t_ns: int) -> None:
         chain = place.network.chain
         if chain is None:
-            raise FaultError("emergency_stop: this network has no safety chain (network.chain)")
+            raise ValueError("emergency_stop: this network has no safety chain (network.chain)")
         self._chain = chain
         if chain.press(t_ns):
             place.evidence.act(t_ns, "safety chain")

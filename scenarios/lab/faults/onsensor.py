@@ -4,7 +4,6 @@ from collections import deque
 from collections.abc import Mapping
 from typing import Any
 
-from scenarios.lab.faults.kind import FaultError
 from scenarios.lab.faults.place import UNITS, Place
 from scenarios.lab.layers import Laid
 
@@ -50,7 +49,7 @@ class Off(Sensor):
 
     def __init__(self, place: Place, given: Mapping[str, Any], t_ns: int) -> None:
         if given["sensor"] == "focus.index":
-            raise FaultError("sensor: focus.index is a level; it can be stuck, late or intermittent")
+            raise ValueError("sensor: focus.index is a level; it can be stuck, late or intermittent")
         super().__init__(place, given, t_ns)
 
     def show(self, _t_ns: int, reading: Any) -> Any:

@@ -8,7 +8,6 @@ import numpy as np
 import yaml
 
 from bus.can.stuck import StuckDominant
-from scenarios.lab.faults.kind import FaultError
 from scenarios.lab.layers import Evidence, Laid, Stacks, turned
 from scenarios.lab.network import Network
 
@@ -44,14 +43,14 @@ class Place:
         return self.network.layers
 
     def board(self, name: str) -> Any:
-        """A board of the network; raises FaultError."""
+        """A board of the network; raises ValueError."""
         try:
             return self.network.boards[name]
         except KeyError:
-            raise FaultError(f"this network has no board {name}") from None
+            raise ValueError(f"this network has no board {name}") from None
 
     def pin(self, sensor: str) -> tuple[Any, str, int | None]:
-        """(chip, attribute, motor) through which a board reads a sensor; raises FaultError when none does."""
+        """(chip, attribute, motor) through which a board reads a sensor; raises ValueError when none does."""
         board, chip, attribute, motor = SENSORS[sensor]
         owner = self.board(board)
         for part in filter(None, chip.split(".")):

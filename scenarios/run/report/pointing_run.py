@@ -5,9 +5,8 @@ import numpy as np
 
 from bus.units import ARCSEC_PER_RAD
 from host.sky.pointfit import fit_stars
-from host.sky.pointmodel import PointingModel
+from host.sky.pointmodel import ZEROS, PointingModel
 from host.sky.pointstars import Stars, stars_of
-from host.sky.pointterms import ZEROS
 from scenarios.run.outcome import Array, Outcome
 from scenarios.run.report.style import COLOURS, Figure, axes, new_figure, title
 

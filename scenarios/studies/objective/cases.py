@@ -2,9 +2,11 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+import yaml
 
 from bus.protocol import AxisParameter
 from plant.model import with_effects
@@ -15,11 +17,8 @@ from scenarios.studies.objective.bench import MODES, Held, hold
 from scenarios.studies.objective.bound import Bound
 from scenarios.studies.options import ObjectiveOptions
 
-EFFECTS = ("motor_cogging", "torque_ripple", "pwm_deadband", "encoder_subdivision")
-"""At the catalogue's default size (`schmidt effects NAME`)."""
 PAPER = "the paper's firmware"
 STARTS = 8
-SPEEDS_M_S = (1.0, 3.0, 10.0)  # Of the wind in the slit.
 FIRST_DEG, LAST_DEG = 85.0, 265.0
 """Of the absolute encoder: 95 deg before the middle of the travel to 85 deg after it."""
 
@@ -29,9 +28,9 @@ class Case:
     """One row: which plant, what is added to it, which firmware, with the compensation table or not."""
 
     name: str
-    effects: tuple[str, ...] = ()
+    effects: Sequence[str] = ()
     firmware: str = "fine"
-    without: tuple[int, ...] = ()
+    without: Sequence[str] = ()
     """Parameters of the firmware that are left out: the steps of a ladder."""
     compensated: bool = False
     high: bool = False
@@ -46,43 +45,18 @@ class Case:
         return with_effects(model, "ra", (*model.axes.ra.effects, *added))
 
 
+_ROWS = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text(encoding="utf-8"))
+
+
 def cases(compensation: bool) -> tuple[Case, ...]:
     """Rows of the table; with a compensation file, those of the fine firmware once more with it."""
-    rows = [Case(name=PAPER, firmware="paper"), Case(name="spread duty, bias, lock, blend")]
-    if compensation:
-        rows.append(Case(name="the same, compensated", compensated=True))
-    rows += [Case(name=f"with {effect}", effects=(effect,)) for effect in EFFECTS]
-    rows += [
-        Case(name="with all four", effects=EFFECTS),
-        Case(name=f"with all four, {PAPER}", effects=EFFECTS, firmware="paper"),
-        Case(name=f"high preload, {PAPER}", firmware="paper", high=True),
-        Case(name="high preload, spread duty, bias, lock, blend", high=True),
-    ]
-    for speed in SPEEDS_M_S:
-        name = f"wind of {speed:g} m/s"
-        rows.append(Case(name=f"{name}, {PAPER}", firmware="paper", wind_m_s=speed))
-        rows.append(Case(name=name, wind_m_s=speed))
-    return tuple(rows)
-
-
-RUNGS = (
-    ("spread duty", AxisParameter.DUTY_FRACTION),
-    ("locked rate", AxisParameter.RATE_LOCK),
-    ("blended position", AxisParameter.POSITION_BLEND),
-    ("bias", AxisParameter.COUNTER_BIAS_Q8),
-)
-"""In the order in which docs/results/one-arcsecond.md proposes them."""
+    rows = (Case(**row) for row in _ROWS["table"])
+    return tuple(row for row in rows if compensation or not row.compensated)
 
 
 def ladder() -> tuple[Case, ...]:
     """The firmware's changes one after the other, on the declared plant and with all four effects."""
-    rows = []
-    for added, effects in (("", ()), (", all four effects", EFFECTS)):
-        rows.append(Case(name=PAPER + added, effects=effects, firmware="paper"))
-        for place, (name, _) in enumerate(RUNGS, 1):
-            left = tuple(int(number) for _, number in RUNGS[place:])
-            rows.append(Case(name=f"+ {name}{added}", effects=effects, without=left))
-    return tuple(rows)
+    return tuple(Case(**row) for row in _ROWS["ladder"])
 
 
 def starts(shift_deg: float, count: int = STARTS) -> list[float]:
@@ -137,7 +111,7 @@ def measure(
     for case in cases:
         model = case.plant(*plants)
         known = parameters_of(case.firmware, model)
-        firmware = [row for row in known.items() if row[0] not in case.without]
+        firmware = [row for row in known.items() if AxisParameter(row[0]).name not in case.without]
         parameters = [*firmware, *(compensation if case.compensated else ())]
         for mode in MODES:
             held: list[Held] = []

@@ -7,6 +7,7 @@ record the caller chooses: velocity as logged (counts of 5 ms), true velocity, o
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from scenarios.studies.paper.scales import ADC_A_PER_COUNT, COUNT_RATE, LOG_PERIOD_S
 from scenarios.studies.paper.scales import Array as Array
@@ -82,15 +83,13 @@ def cycles(rate: Array, setpoint: float) -> int:
 
     A limit cycle does so again and again; quantisation of steady motion (7 to 8 % at 15 arcsec/s) never.
     """
-    ratio = rate / setpoint
-    state, count = 0, 0
-    for low, high in zip(ratio < 0.5, ratio > 1.5, strict=True):
-        if low:
-            state = -1
-        elif high:
-            count += state < 0
-            state = 1
-    return count
+    return rises(rate / setpoint < 0.5, rate / setpoint > 1.5)
+
+
+def rises(low: NDArray[np.bool_], high: NDArray[np.bool_]) -> int:
+    """Return how often a record went from low to high, whatever lies between."""
+    marks = np.where(high, 1, np.where(low, -1, 0))
+    return int(np.count_nonzero(np.diff(marks[marks != 0]) > 0))
 
 
 @dataclass(frozen=True)

@@ -100,14 +100,12 @@ class Row:
         said, first = self.experiment.said, self.decisive
         return {
             "id": self.id,
-            "published": said.figure,
+            "published": said["figure"],
             "emulated": _plain(self.worst(first)),
             "unit": first.unit,
             "passed": self.passed,
             "reason": self.reason,
-            "where": said.where,
-            "quote": said.quote,
-            "bound": said.bound,
+            **{word: said[word] for word in ("where", "quote", "bound")},
             "limits": [
                 asdict(limit)
                 | {"median": _plain(self.median(limit.figure)), "worst": _plain(self.worst(limit))}
@@ -148,8 +146,8 @@ def _line(row: Row) -> str:
     verdict = "met" if row.passed else "**miss**"
     middle, far = (_short(value, limit.unit) for value in (row.median(limit.figure), row.worst(limit)))
     decides = f"{limit.words} ({limit.bounds})"
-    title = f"{said.title} ({said.where})"
-    return f"| {row.id} | {title} | {said.figure} | {decides} | {middle} | {far} | {verdict} |"
+    title = f"{said['title']} ({said['where']})"
+    return f"| {row.id} | {title} | {said['figure']} | {decides} | {middle} | {far} | {verdict} |"
 
 
 def _figures(row: Row) -> list[str]:

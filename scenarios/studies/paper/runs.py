@@ -1,7 +1,6 @@
 """The experiments as the authors ran them: commands to a bench, logs back. No judgement here."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from math import ceil
 from typing import Protocol
 
@@ -48,36 +47,9 @@ def high_speed(bench: Bench, setpoint: float, seconds: float, settle: float) -> 
     return closed, bench.open_loop(effort, settle + seconds).after(settle)
 
 
-@dataclass(frozen=True)
-class LowSpeed:
-    """E6: closed loop at 100 arcsec/s and a staircase of open-loop efforts down to standstill.
-
-    steps: (effort, log of the settled part). nearest: the open-loop run whose mean is nearest to 100
-    arcsec/s.
-    """
-
-    closed: Log
-    steps: list[tuple[int, Log]] = field(default_factory=list)
-
-    @property
-    def running(self) -> list[tuple[int, Log]]:
-        """Steps in which the axis never stood still."""
-        return [step for step in self.steps if not stalled(step[1].rate)]
-
-    @property
-    def lowest(self) -> float | None:
-        """Lowest mean velocity kept up in open loop, arcsec/s; None when it never ran."""
-        return min((float(log.rate.mean()) for _, log in self.running), default=None)
-
-    @property
-    def nearest(self) -> Log | None:
-        """The open-loop run nearest to 100 arcsec/s."""
-        return min((log for _, log in self.running), key=lambda log: abs(log.rate.mean() - LOW), default=None)
-
-
-def low_speed(bench: Callable[[], Bench]) -> LowSpeed:
-    """E6: as an operator would look for the lowest open-loop speed. bench: makes a fresh one, at the same
-    place.
+def low_speed(bench: Callable[[], Bench]) -> tuple[Log, list[Log]]:
+    """E6: as an operator would look for the lowest open-loop speed. Return the closed loop, and the open-loop
+    runs in which the axis never stood still. bench: makes a fresh one, at the same place.
 
     Closed loop at 100 arcsec/s first. Then, for one effort after the other, from 140 arcsec/s into open loop
     for DWELL_S after SETTLE_S. The first effort is the one that the loop needed. It falls in the smallest
@@ -85,13 +57,16 @@ def low_speed(bench: Callable[[], Bench]) -> LowSpeed:
     """
     closed = bench().closed_loop(LOW, SETTLE_S + DWELL_S).after(SETTLE_S)
     effort = round(float(closed.effort.mean()))
-    steps: list[tuple[int, Log]] = []
+    running: list[Log] = []
 
     def moves(tried: int) -> bool:
         trial = bench()
         trial.closed_loop(1.4 * LOW, 4.0)
-        steps.append((tried, trial.open_loop(tried, SETTLE_S + DWELL_S).after(SETTLE_S)))
-        return not stalled(steps[-1][1].rate)
+        log = trial.open_loop(tried, SETTLE_S + DWELL_S).after(SETTLE_S)
+        if stalled(log.rate):
+            return False
+        running.append(log)
+        return True
 
     if moves(effort):
         for tried in range(effort - 1, max(0, effort - TRIALS), -1):
@@ -101,7 +76,7 @@ def low_speed(bench: Callable[[], Bench]) -> LowSpeed:
         for tried in range(effort + 1, effort + TRIALS):
             if moves(tried):
                 break
-    return LowSpeed(closed, steps)
+    return closed, running
 
 
 TRIALS = 10  # Efforts tried on each side at most.

@@ -7,7 +7,7 @@ import pytest
 
 from host.alpaca import device as alpaca
 from host.alpaca.device import COMMON, Device, unknown
-from host.alpaca.parameters import Parameters
+from host.alpaca.requests import Parameters
 from host.telescope import AsyncDesk
 
 
@@ -42,7 +42,8 @@ def connect(device: Device, name: str) -> None:
     member = next(each for each in COMMON if each.name == name)
     given = Parameters("Connected=True" if name == "Connected" else "", exact=True)
     with asyncio.Runner(loop_factory=Looked) as runner:
-        runner.run(device.call(member, True, given))
+        assert member.put is not None
+        runner.run(member.put(device, given))
 
 
 @pytest.mark.parametrize("name", ["Connected", "Connect"])

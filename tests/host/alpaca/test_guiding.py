@@ -11,9 +11,8 @@ from alpaca.telescope import GuideDirections, Telescope
 
 from calibration.inputs.guidelog import read_guide_log
 from host.camera.models import GUIDE
-from host.sky.apparent import apparent_of_observed
 from host.sky.catalogue import STARS
-from host.sky.observed import observe
+from host.sky.observed import apparent_of_observed, observe
 from tests.host.alpaca.conftest import AlpacaLive
 from tests.host.alpaca.test_alpyca import until
 from tests.host.alpaca.test_camera import exposed

@@ -4,6 +4,7 @@ import shutil
 import subprocess
 from pathlib import Path
 
+import erfa
 import numpy as np
 import pytest
 
@@ -11,7 +12,7 @@ from bus.units import ARCSEC_PER_RAD
 from host.camera.camera import Order, expose
 from host.camera.models import GUIDE, MAIN, CameraModel, Look, Window
 from host.camera.seeing import Wander
-from host.camera.stars import SyntheticSky, catalogued, separation
+from host.camera.stars import SyntheticSky, catalogued
 from host.sky.site import NAINITAL
 from scenarios.doors.options import ServeOptions
 from scenarios.lab.eye import look
@@ -69,7 +70,7 @@ def _off_arcsec(file: Path, model: CameraModel, true: Look) -> float:
     _run(folder, "solve-field", *words, *limits, "bare.fits")
     assert (folder / "bare.solved").exists()
     found = np.radians(WCS(fits.getheader(folder / "bare.wcs")).all_pix2world(*middle, 0))
-    off = float(separation(found[0], found[1], *catalogued(true, NAINITAL, CLOCK))) * ARCSEC_PER_RAD
+    off = float(erfa.seps(found[0], found[1], *catalogued(true, NAINITAL, CLOCK))) * ARCSEC_PER_RAD
     print(f"{model.name}: {off:.2f} arcsec")
     return off
 

@@ -2,9 +2,8 @@
 
 import erfa
 
-from host.sky.apparent import Place
 from host.sky.catalogue import Star
-from host.sky.observed import Clock
+from host.sky.observed import Clock, Place
 
 
 def apparent_of_star(star: Star, clock: Clock, t_s: float) -> Place:

@@ -7,9 +7,8 @@ import numpy as np
 
 from bus.units import ARCSEC, ARCSEC_PER_RAD
 from host.sky.mount import limits_mount
-from host.sky.pointmodel import PointingModel, Term
+from host.sky.pointmodel import Array, PointingModel, Term
 from host.sky.pointstars import Sighting
-from host.sky.pointterms import Array
 from plant.mount import sky
 from plant.parts import MountErrors, Number
 

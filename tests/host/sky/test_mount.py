@@ -13,8 +13,7 @@ from host.sky.catalogue import STARS, star
 from host.sky.mount import STEP_ARCSEC, limits_mount, scale_from_limits
 from host.sky.observed import Clock, observe
 from host.sky.site import NAINITAL
-from host.sky.visibility import Unreachable, check_reachable
-from host.telescope.observatory import Observatory
+from host.sky.visibility import Observatory, Unreachable, check_reachable
 
 MOUNT = limits_mount(math.radians(100), math.radians(-35), math.radians(89.9), NAINITAL.latitude_rad)
 EVENING = Clock(dt.datetime(2026, 2, 10, 14, 0, tzinfo=dt.UTC))

@@ -7,8 +7,8 @@ import pytest
 
 from bus.units import ARCSEC
 from host.sky.pointfind import Answer, find
+from host.sky.pointmodel import GEOMETRY, TERMS, Array
 from host.sky.pointstars import Stars, rms
-from host.sky.pointterms import GEOMETRY, TERMS, Array
 from plant.mount import sky
 from tests.host.sky.seen import LATITUDE, axes, errors
 

@@ -12,9 +12,8 @@ from bus.units import ARCSEC, ARCSEC_PER_RAD
 from host.sky import pointmodel
 from host.sky.catalogue import star
 from host.sky.pointfit import FEWEST_STARS, TooFewStars, fit
-from host.sky.pointmodel import PointingModel
+from host.sky.pointmodel import GEOMETRY, TERMS, TEXTS, PointingModel
 from host.sky.pointstars import Sighting
-from host.sky.pointterms import GEOMETRY, TERMS, TEXTS
 from host.sky.site import NAINITAL
 from host.sky.tracks import StarTrack
 from plant.mount import sky

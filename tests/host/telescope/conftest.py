@@ -8,9 +8,8 @@ from typing import TypeVar
 
 import pytest
 
-from host.sky.apparent import Place, sidereal_time_rad, star_of_apparent
 from host.sky.catalogue import Star
-from host.sky.observed import Clock
+from host.sky.observed import Clock, Place, sidereal_time_rad, star_of_apparent
 from host.telescope import Job, Telescope
 from scenarios.doors.livenetwork import LiveNetwork
 from scenarios.language.load import DEFAULT_PLANT

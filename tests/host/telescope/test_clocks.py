@@ -5,7 +5,7 @@ import math
 import pytest
 
 from host.console.figures import SIDEREAL_RAD_S, airmass, clocks, duration, until_limit_s
-from host.sky.apparent import horizontal
+from host.sky.observed import horizontal
 from tests.host.telescope.conftest import Rig
 
 

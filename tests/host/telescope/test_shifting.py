@@ -3,7 +3,7 @@
 import pytest
 
 from bus.time import generator
-from host.procedures.shifting import TICK_S, Shifting
+from host.procedures.autoguide import TICK_S, Shifting
 
 
 def went(gaps_s: list[float], wanted: float) -> tuple[list[float], list[float]]:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from scenarios.commands.parts import advice, need
+from scenarios.options import advice, need
 from tests.scenarios.commands.base import closure
 
 ROOT = Path(__file__).parents[3]
@@ -86,7 +86,7 @@ def test_boards_are_checked_and_served_with_the_base_alone(tmp_path: Path) -> No
 
 
 def test_every_part_of_a_user_is_answered_with_its_command(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("scenarios.commands.parts.find_spec", lambda name: None)
+    monkeypatch.setattr("scenarios.options.find_spec", lambda name: None)
     for extra in (set(PROJECT["optional-dependencies"]) - WORKSHOP) | {"cluster"}:
         with pytest.raises(ValueError, match=rf"\(extra {extra}\); .* -m pip install "):
             need(extra)
@@ -99,6 +99,6 @@ def test_what_is_installed_needs_nothing() -> None:
 
 
 def test_an_extra_that_is_missing_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("scenarios.commands.parts.find_spec", lambda name: None)
+    monkeypatch.setattr("scenarios.options.find_spec", lambda name: None)
     with pytest.raises(ValueError, match=r"^not installed: matplotlib, jinja2 \(extra plots\)"):
         need("plots")

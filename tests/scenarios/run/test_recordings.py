@@ -15,7 +15,8 @@ from pyarrow import parquet
 
 from calibration.errors import CalibrationInputError
 from calibration.inputs.recordings import read_mcap, read_mf4
-from scenarios.commands import describing, parts
+from scenarios import options as parts
+from scenarios.commands import describing
 from scenarios.lab.prepare import prepare
 from scenarios.run import run as runner
 from scenarios.run.mcapfile import Entry, Source, _of_summary, export

@@ -10,7 +10,7 @@ from plant.parts import EffectModel, PlantModel
 from scenarios.language.configure import parameters_of
 from scenarios.run.report.style import COLOURS, axes, new_figure, thin, title
 from scenarios.studies.objective.bench import hold
-from scenarios.studies.objective.cases import EFFECTS, starts
+from scenarios.studies.objective.cases import starts
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 HERE = Path(__file__).parents[3] / "docs" / "results" / "one-arcsecond"
 _SECONDS = 60.0
 _START = starts(0.0)[2]
+
+EFFECTS = ("motor_cogging", "torque_ripple", "pwm_deadband", "encoder_subdivision")
 
 
 def _with(model: PlantModel, *names: str) -> PlantModel:

@@ -47,8 +47,8 @@ def page() -> str:
         limits = "\n".join(map(_limit, row.limits))
         said = row.said
         parts.append(
-            f"### {row.id}: {said.title} ({said.where})\n\n> {said.quote}\n\nPublished: {said.figure}.\n\n"
-            f"{said.bound}\n\n| figure | limit |\n|---|---|\n{limits}\n\n"
+            f"### {row.id}: {said['title']} ({said['where']})\n\n> {said['quote']}\n\n"
+            f"Published: {said['figure']}.\n\n{said['bound']}\n\n| figure | limit |\n|---|---|\n{limits}\n\n"
         )
     tolerances = {limit.figure: limit.high for row in EXPERIMENTS if row.id == "E7" for limit in row.limits}
     rows = "\n".join(

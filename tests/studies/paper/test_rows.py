@@ -74,7 +74,7 @@ def test_eight_angles_and_three_seeds():
 def test_every_row_quotes_the_paper_and_says_what_it_is_held_to():
     assert [row.id for row in EXPERIMENTS] == [f"E{k}" for k in range(1, 16)]
     for row in EXPERIMENTS:
-        assert len(row.said.quote) > 20 and len(row.said.bound) > 20
+        assert len(row.said["quote"]) > 20 and len(row.said["bound"]) > 20
         assert row.limits
         assert all(limit.low <= limit.high and limit.scale > 0.0 for limit in row.limits)
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from scenarios.studies.paper.experiments.experiment import Figures, row
-from scenarios.studies.paper.measures import Array, Log, means, peak_percent
+from scenarios.studies.paper.measures import Array, Log, means, peak_percent, rises
 from scenarios.studies.paper.runs import HIGH, LOW, SLOW_SLEW, TRACKING, Bench, high_speed, tracking
 from scenarios.studies.paper.scales import COUNT_RATE, LOG_PERIOD_S
 from scenarios.studies.paper.starts import Benches, viscous_only
@@ -136,12 +136,4 @@ def stick_slips(log: Log, setpoint: float, leap: float) -> int:
     width = round(STICK_S / LOG_PERIOD_S)
     mean = np.convolve(log.rate, np.full(width, 1.0 / width), mode="valid")
     still = np.concatenate([np.abs(mean) < STILL, np.zeros(width - 1, dtype=bool)])
-    fast = log.rate > leap * setpoint
-    count, stuck = 0, False
-    for at_rest, leaps in zip(still, fast, strict=True):
-        if leaps:
-            count += stuck
-            stuck = False
-        elif at_rest:
-            stuck = True
-    return count
+    return rises(still, log.rate > leap * setpoint)

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import yaml
 
@@ -51,17 +51,6 @@ class Limit:
         return f"≥ {self.low:g}" if self.high >= EVER else f"{self.low:g}–{self.high:g}"
 
 
-class Said(NamedTuple):
-    """title; where: in the paper; figure: published, in words; quote: its text (Opt. Eng. 52(8) 081607);
-    bound: how it is measured and why held to these limits."""
-
-    title: str
-    where: str
-    figure: str
-    quote: str
-    bound: str
-
-
 @cache
 def _rows() -> dict[str, dict[str, Any]]:
     found: dict[str, dict[str, Any]] = yaml.safe_load(ROWS.read_text(encoding="utf-8"))
@@ -78,9 +67,10 @@ class Experiment:
     beside: tuple[tuple[str, str], ...] = ()
 
     @property
-    def said(self) -> Said:
-        """Its words, from rows.yaml."""
-        return Said(**{word: _rows()[self.id][word] for word in Said._fields})
+    def said(self) -> dict[str, Any]:
+        """Its row of rows.yaml. title; where: in the paper; figure: published, in words; quote: its text;
+        bound: how it is measured and why held to these limits."""
+        return _rows()[self.id]
 
 
 def row(

@@ -39,10 +39,10 @@ def higher_speeds(benches: Benches) -> Figures:
 @row("E6")
 def slowest(benches: Benches) -> Figures:
     """The staircase of open-loop efforts and what the loop leaves of the slow line."""
-    run = low_speed(lambda: benches("low"))
-    nearest, lowest = run.nearest, run.lowest
-    if nearest is None or lowest is None:
+    closed, running = low_speed(lambda: benches("low"))
+    if not running:
         return {}
+    nearest = min(running, key=lambda log: abs(log.rate.mean() - LOW))
     line = strongest_line(nearest.rate, 0.01, 0.2)
     mean = float(nearest.rate.mean())
     effort = round(float(np.median(nearest.effort)))
@@ -53,9 +53,9 @@ def slowest(benches: Benches) -> Figures:
     return {
         "line": line.frequency_hz,
         "nearest": abs(mean - LOW),
-        "lowest": lowest,
-        "left": line_amplitude(run.closed.rate, line.frequency_hz) / max(1e-9, line.amplitude),
-        "narrower": peak_percent(nearest.rate, mean) - peak_percent(run.closed.rate, LOW),
+        "lowest": min(float(log.rate.mean()) for log in running),
+        "left": line_amplitude(closed.rate, line.frequency_hz) / max(1e-9, line.amplitude),
+        "narrower": peak_percent(nearest.rate, mean) - peak_percent(closed.rate, LOW),
         "order a step up": order(above) / max(1e-9, order(nearest)) if moving else NAN,
         "mean": mean,
         "amplitude": line.amplitude,
