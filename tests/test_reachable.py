@@ -17,8 +17,8 @@ PAGES = "\n".join(
     for p in ROOT.glob(f"docs/{f}/*.md")
     if p.name != "api.md"  # names what there is
 )
-TABLES = "\n".join(p.read_text(encoding="utf-8") for p in (ROOT / "scenarios").glob("[lr]*/**/*.yaml"))
-"""Of the lab and of runs: they name classes and functions."""
+TABLES = "\n".join(p.read_text(encoding="utf-8") for p in (ROOT / "scenarios").glob("[dlr]*/**/*.yaml"))
+"""Of doors, lab and runs: they name classes and functions."""
 LOADED_BY_FOLDER = ("plant.effects.", "calibration.names.", "boards.", "scenarios.studies.paper.experiments.")
 """Found where they stand (plant/effects/__init__.py, calibration/names, a board's package, paper's rows)."""
 
@@ -89,6 +89,7 @@ def test_every_module_is_reached_from_a_command() -> None:
     named = {n.replace("/", ".").removesuffix(".py") for n in re.findall(r"[a-z_]+(?:[./]\w+)+", PAGES)}
     seen: set[str] = set()
     todo = named & set(known)
+    todo |= set(re.findall(r"[a-z_]+(?:\.\w+)+", TABLES)) & set(known)
     todo |= {n for n in known if n.startswith(LOADED_BY_FOLDER) or n.endswith("__main__")}
     while todo:
         name = todo.pop()

@@ -140,8 +140,10 @@ def within_bounds(resolved: float) -> Rule:
 
 
 def cancelled(s: Selection) -> tuple[int, str] | None:
-    """Of two effects of which one takes most of the other away, so that neither is as large as it is said to
-    be, the one whose absence leaves less on held-out rows."""
+    """Of two effects that take most of each other away the one whose absence leaves less on held-out rows.
+
+    Neither is as large as it is said to be.
+    """
     each_effect = [s.effect(k)[s.problem.train] for k in range(len(s.chosen))]
     for j, k in combinations(range(len(s.chosen)), 2):
         one, other = each_effect[j], each_effect[k]

@@ -204,7 +204,7 @@ def _harmonic_leads(s: Selection, k: int) -> bool:
 def _elsewhere(s: Selection, k: int) -> list[Candidate]:
     """A period next to a free one that fits better; next to a part's, that predicts clearly better."""
     p, c, beside = s.problem, s.candidates[k], s.without(k).columns
-    rate = c.frequency or 0.0
+    rate = _rate(c)
 
     def turning(at: float) -> Array:
         return np.hstack([beside, harmonics(p, at, (1,))])
@@ -239,11 +239,20 @@ def settle(problem: Problem, candidates: list[Candidate], named: bool) -> Select
             if not why and x.candidate.stage and not named and _harmonic_leads(s, k):
                 why = "a harmonic is larger than the turn itself, on a wheel that is only assumed"
             if not why and (other := _elsewhere(s, k)):
-                why, moved = f"a period of {1 / (other[0].frequency or 1.0):.1f} s fits better", other
+                moved += other
+                better = f"a period of {1 / (other[0].frequency or 1.0):.1f} s predicts better"
+                why = better if x.candidate.stage else ""
             if why:
                 refused.append(Refusal(x.candidate.say(), why))
                 idle.add(x.candidate.key)
-        if not idle:
+        if not idle and not moved:
             s.refused = refused + s.refused
             return s
-        candidates = [c for c in candidates if c.key not in idle and (c.stage or not moved)] + moved
+        near = 1.0 / longest_span(problem)
+        kept = (c for c in candidates if c.stage or all(abs(_rate(c) - _rate(m)) >= near for m in moved))
+        candidates = [*(c for c in kept if c.key not in idle), *moved]
+
+
+def _rate(c: Candidate) -> float:
+    """Turns per second of a period."""
+    return c.frequency or 0.0

@@ -2,7 +2,7 @@
 
 The host has a process of its own, as it has on the telescope. Browsers and HTTP would otherwise hold Python's
 lock when a tick is due. Nothing but these values crosses; the emulator's side is `host_door`, the host's
-`piped_host`.Beside the records below there are tuples of a word and what belongs to it.
+`piped_host`. Beside the records below there are tuples of a word and what belongs to it.
 
 From the host come `report` (64 bytes for the gateway), `said` (a line for the user) and `opened` (doors,
 error). A `wish` has a number and a command of the control plane. To the host go `done` (the wish's number,
