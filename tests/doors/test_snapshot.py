@@ -103,7 +103,7 @@ def test_one_entry_more_after_the_snapshot_is_another_rest(tmp_path: Path) -> No
     file = tmp_path / "session" / "entered.log"
     lines = file.read_text().splitlines()
     end_ns = lines[-1].split()[0]
-    file.write_text("\n".join([*lines, f"{end_ns} board {b'POSITION_RA off'.hex()}"]) + "\n")
+    file.write_text("\n".join([*lines, f"{end_ns} command {b'power POSITION_RA off'.hex()}"]) + "\n")
     again, before = replay_rest(tmp_path / "session", snapshot)
     assert before not in (None, again)
 

@@ -80,7 +80,7 @@ def test_the_table_names_the_command_that_repeats_it(tmp_path: Path) -> None:
     objective(
         ObjectiveOptions(out=tmp_path, plant="low_preload", only="with pwm", starts=1, seeds=1, seconds=1.0)
     )
-    command = "schmidt objective --starts 1 --seeds 1 --seconds 1 --plant low_preload --only 'with pwm'"
+    command = "schmidt objective --plant low_preload --starts 1 --seeds 1 --seconds 1 --only 'with pwm'"
     assert command in (tmp_path / "one-arcsecond.md").read_text()
     assert json.loads((tmp_path / "objective.json").read_text())["command"] == command
 
