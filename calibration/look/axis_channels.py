@@ -19,8 +19,10 @@ from calibration.decide.broadband import unexplained_volts
 from calibration.decide.delays import delay_findings
 from calibration.decide.heldout import choose_held_out
 from calibration.decide.merge import merge
+from calibration.decide.parameters import parameters_of
 from calibration.decide.residual import quick_lines
 from calibration.decide.select import select
+from calibration.decide.selection import Selection
 from calibration.decide.tolerance import changes, train_stiffness
 from calibration.finding import Finding
 from calibration.inputs.declaration import Response, Rig
@@ -39,9 +41,12 @@ from calibration.names.log_wrap import repair_wraps
 from calibration.names.pair import Pair
 from calibration.names.play import NAME as GAP
 from calibration.names.unknown_bits import repair_stuck_bit
+from plant.effects import REGISTRY
 from plant.units import ARCSEC
 
 # of the mean square of the 5 ms velocity: one count of it is ten times the interpolation error. arithmetic
+# times the plant's bound, beyond which a size is no size: sealed eccentricities reach twice it. ASSUMPTION
+FAR = 4.0
 FINE_MARGIN = 0.002
 FLOWS_A = 0.05  # A: a smaller current is cut off at zero. ASSUMPTION: eight counts
 QUICK_ROWS = 1.25  # rows, standard deviation: what is quicker is within no analysis band. ASSUMPTION: 15 Hz
@@ -124,16 +129,32 @@ def encoder_channels(result: AxisResult, per_ampere: float) -> None:
     k = result.kinematic = kinematic_problem(frame, m, result.held, per_ampere, numbers.lines)
     if k is not None:
         pair = Pair(motion=m, motor=np.repeat([0.0, 1.0], len(m.rows)))
-        s = result.selections["K"] = select(k.problem, _candidates(result, "K", pair, k.problem), result.rng)
+        some = _candidates(result, "K", pair, k.problem)
+        s = result.selections["K"] = _within_the_plant(k.problem, some, result.rng)
         result.collect(s)
         fitted, stiffness = train_stiffness(s, result.scale_error)
         result.findings += changes(fitted, stiffness, numbers, {"moved"})
         result.calibrated |= stiffness
     roller = roller_problem(frame, m, result.held)
     if roller is not None:
-        s = select(roller, _candidates(result, "S", Pair(motion=m), roller), result.rng)
+        s = _within_the_plant(roller, _candidates(result, "S", Pair(motion=m), roller), result.rng)
         result.selections["S"] = s
         result.collect(s)
+
+
+def _within_the_plant(p: Problem, some: list[Candidate], rng: np.random.Generator) -> Selection:
+    """Select, and again without what is by its interval larger than the plant lets it be."""
+    s = select(p, some, rng)
+    wild = {c.key for k, c in enumerate(s.candidates) if _beyond_the_plant(s, k)}
+    return _within_the_plant(p, [c for c in some if c.key not in wild], rng) if wild else s
+
+
+def _beyond_the_plant(s: Selection, k: int) -> bool:
+    """Whether the whole interval of a size is far beyond the bounds of the plant's parameter of that name."""
+    spec = REGISTRY.get(s.candidates[k].name)
+    bounds = {(p.name, p.unit): p.high for p in spec.parameters} if spec is not None else {}
+    told = parameters_of(s, k)
+    return any(x.low is not None and x.low > FAR * bounds.get((n, x.unit), np.inf) for n, x in told.items())
 
 
 def full_rate(result: AxisResult) -> None:
