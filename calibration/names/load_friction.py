@@ -8,6 +8,7 @@ from calibration.names.name import Candidate, Name, Scene, candidate
 from calibration.names.unknown_alone import SETTLED
 from calibration.statistics.regression import solve
 
+MOST = 0.5  # of the force, that rubs: the bound of the plant (plant/effects/load_friction.py)
 #: terms that are no load: what the amplifier's zero does
 ZERO = ("drift", SLOW)
 #: terms that the motor carries, and the load does not
@@ -17,12 +18,17 @@ FRICTION = ("coulomb", "viscous")
 def columns(s: Scene) -> list[Candidate]:
     """The load against the motion: what the motor makes, or what is left of that behind all friction.
 
-    Of the motion, not of the response, whose noise it would share.
+    Of the motion, not of the response, whose noise it would share. Where what is left does not rub, what the
+    motor makes is friction that is badly known.
     """
     if s.pair is not None:  # through both trains, which pull against each other
         load = np.abs(s.pair.load) + 2 * np.abs(s.pair.lagging)
         return [_of(s, np.interp(np.arange(len(s.view.t)), s.view.rows, load))]
-    return [] if lacks(s) or not s.both else [_settled(s, ZERO, True), _settled(s, ZERO + FRICTION, False)]
+    if lacks(s) or not s.both:
+        return []
+    p, carried = s.problem, _settled(s, ZERO + FRICTION, False)
+    x = np.hstack([p.base, carried.columns])[p.train]
+    return [_settled(s, ZERO, True), carried] if solve(x, p.y[p.train])[-1] > 0 else []
 
 
 def _settled(s: Scene, without: tuple[str, ...], itself: bool) -> Candidate:
@@ -40,7 +46,7 @@ def _settled(s: Scene, without: tuple[str, ...], itself: bool) -> Candidate:
 
 
 def _of(s: Scene, load: np.ndarray) -> Candidate:
-    return candidate(NAME.name, s.answer(load), "coefficient", sign=1, most=1.0)
+    return candidate(NAME.name, s.answer(load), "coefficient", sign=1, most=MOST)
 
 
 def lacks(s: Scene) -> str:
