@@ -137,9 +137,9 @@ def _meant(error: Any) -> Any:
 def _choice(field: str, error: Any) -> str:
     """Steps, faults and expectations hold exactly one of several keys."""
     keys = [each["required"][0] for each in error.validator_value if "required" in each]
-    if keys and not isinstance(error.instance, Mapping):
+    if len(keys) == len(error.validator_value) and not isinstance(error.instance, Mapping):
         return ""  # its type is reported already
-    if keys:
+    if keys and isinstance(error.instance, Mapping):
         given = [key for key in keys if key in error.instance]
         if not given:
             if set(error.instance) - set(error.schema.get("properties", {})):
