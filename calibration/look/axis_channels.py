@@ -45,9 +45,9 @@ from plant.effects import REGISTRY
 from plant.units import ARCSEC
 
 # of the mean square of the 5 ms velocity: one count of it is ten times the interpolation error. arithmetic
+FINE_MARGIN = 0.002
 # times the plant's bound, beyond which a size is no size: sealed eccentricities reach twice it. ASSUMPTION
 FAR = 4.0
-FINE_MARGIN = 0.002
 FLOWS_A = 0.05  # A: a smaller current is cut off at zero. ASSUMPTION: eight counts
 QUICK_ROWS = 1.25  # rows, standard deviation: what is quicker is within no analysis band. ASSUMPTION: 15 Hz
 
