@@ -8,7 +8,7 @@ from calibration.names.name import Candidate, Name, Scene, candidate
 from calibration.names.unknown_alone import SETTLED
 from calibration.statistics.regression import solve
 
-MOST = 0.5  # part of the force that rubs, at most. ASSUMPTION: the plant's bound, ten times a usual gear's
+MOST = 0.5  # part of the force that rubs, at most. ASSUMPTION: the plant's bound, five times its default
 #: terms that are no load: what the amplifier's zero does
 ZERO = ("drift", SLOW)
 #: terms that the motor carries, and the load does not
