@@ -16,6 +16,11 @@ WHOLE = 0.9  # share of such a mean's rows that must be usable. ASSUMPTION
 EVEN = 0.17  # times the sensors' noise per row that the means of white noise have, rms. arithmetic
 WIND = 0.9  # times that noise that the means of a wind have, rms: five times EVEN. ASSUMPTION
 LONGEST_S = 20.0  # s over which half of the variance is looked for. ASSUMPTION: longer, it is a slow change
+FEWEST_TURNS = 3  # turns of the motion, fewest, that tell whether a torque turns over with it. ASSUMPTION
+# correlation, part of 1, of a second before a turn with the one after: friction has -1, wind none. ASSUMPTION
+OVER = 0.6
+LUCK = 3.0  # deviations of that correlation, which scatters by 1 / sqrt(turns) in a quick wind. ASSUMPTION
+SURELY = 0.95  # part of 1, that the correlation must reach at most. ASSUMPTION
 # cycles of a wind at its correlation time, that its deviation is known by at least. ASSUMPTION
 FEWEST_CYCLES = 4.0
 # rad/s: quicker, the bristles are saturated, and their history cannot look like wind. ASSUMPTION
@@ -93,18 +98,39 @@ def wind(e: Array, problem: Problem, white: float) -> Finding | None:
     sigma = float(np.sqrt(variance))
     if sigma < STEPS * problem.step:
         return None  # two converters' rounding that a steady motion does not average out
-    rows = problem.train
+    rows, turns_over = problem.train, follows_direction(e, problem)
     tails, logged_s = kurtosis(e[rows]), float(rows.sum()) * problem.period_s
     evidence = variance_log10((ratio / EVEN) ** 2, logged_s / MEAN_S)
     share = 1 - white**2 / float(np.mean(e[rows] ** 2))
-    if tails > BURSTS:
+    if tails > BURSTS or turns_over:
         size, low, high = rms_interval(e[rows], problem.block)
         bursts = f"bursts of torque (kurtosis {tails:.0f}; wind is Gaussian, 3)"
-        note, rms = f"{bursts} that no angle, speed or reversal explains", Parameter(size, "N m", low, high)
-        parameters = {"rms": rms}
-        return Finding(UNKNOWN, "T", "time", evidence=evidence, share=share, note=note, parameters=parameters)
+        domain, note = "time", f"{bursts} that no angle, speed or reversal explains"
+        if turns_over:
+            domain = "velocity"
+            note = "torque that turns over with the direction: friction of no kind that has a name"
+        rms = {"rms": Parameter(size, "N m", low, high)}
+        return Finding(UNKNOWN, "T", domain, evidence=evidence, share=share, note=note, parameters=rms)
     turns = FEWEST_CYCLES if time is None else max(logged_s / (2 * np.pi * time), FEWEST_CYCLES)
     found = {"deviation": deviation(sigma, turns, "N m")}
     if time is not None:  # half of the variance is gone: no error known
         found["correlation_time"] = Parameter(float(time), "s")
     return Finding("wind_torque", "T", "time", parameters=found, evidence=evidence, share=share)
+
+
+def follows_direction(e: Array, problem: Problem) -> bool:
+    """Whether a torque turns over where the motion does: wind goes on as it was."""
+    rate = rate_of(problem)
+    size = max(round(MEAN_S / problem.period_s), 2)
+    rows = np.flatnonzero(problem.train & (np.abs(rate) > SLIDING))
+    one_run = np.diff(problem.run[rows]) == 0
+    turns = np.flatnonzero((rate[rows[1:]] * rate[rows[:-1]] < 0) & one_run)
+    pairs = [
+        (float(e[rows[max(k + 1 - size, 0) : k + 1]].mean()), float(e[rows[k + 1 : k + 1 + size]].mean()))
+        for k in turns.tolist()
+    ]
+    if len(pairs) < FEWEST_TURNS:
+        return False
+    a, b = np.array(pairs).T
+    over = min(max(OVER, LUCK / np.sqrt(len(pairs))), SURELY)
+    return bool(float(a @ b) < -over * np.sqrt(float(a @ a) * float(b @ b)))

@@ -1,6 +1,7 @@
 """Late columns of an axis: lags from coefficients of rates (effects.md, lesson 2), against sound logs'."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -20,15 +21,25 @@ REACH = student_reach(limits.LAG_FREEDOM)
 Selections = Mapping[str, Selection]
 
 
-def delay_findings(selections: Selections, declared: Declared) -> list[Finding]:
-    """One finding, on the column that is late: encoders tell most."""
-    return _of_encoders(selections, declared) or _of_currents(selections, declared)
-
-
-def _late(column: str, delay: float, reach: float) -> list[Finding]:
+@dataclass(frozen=True, kw_only=True)
+class Late:
     """A column that is late by `delay` s, and the reach of its 95 % interval."""
-    found = late_column(f"the {column} column is late", delay, reach / REACH, reach=REACH)
-    return [found.having(column=Parameter(float(COLUMNS[column]), "1"))]
+
+    column: str
+    delay: float
+    reach: float
+
+
+def delay_findings(selections: Selections, declared: Declared) -> list[Finding]:
+    """One finding, on the column that is late: encoders tell most, volts alone least."""
+    rules = (_of_encoders, _of_currents, _of_volts)
+    late = next((x for x in (rule(selections, declared) for rule in rules) if x is not None), None)
+    if late is None:
+        return []
+    found = late_column(f"the {late.column} column is late", late.delay, late.reach / REACH, reach=REACH)
+    if late.column in COLUMNS:
+        found = found.having(column=Parameter(float(COLUMNS[late.column]), "1"))
+    return [found]
 
 
 def _lag(s: Selection, key: str) -> tuple[float, float]:
@@ -44,10 +55,10 @@ def _matters(s: Selection, key: str) -> bool:
     return 1.0 - s.fitted_square / max(float(np.mean(without**2)), 1e-300) > limits.MARGIN
 
 
-def _of_encoders(selections: Selections, declared: Declared) -> list[Finding]:
+def _of_encoders(selections: Selections, declared: Declared) -> Late | None:
     """On a log of the emulator's own boards a measurement may have waited for the bus."""
     least = limits.SMALLEST_LAG_S + (limits.BUS_WAIT_S if declared.own else 0.0)
-    late: dict[str, tuple[str, float, float]] = {}
+    late: dict[str, Late] = {}
     for key, column in (("K", "tachometers"), ("S", "velocity")):
         s = selections.get(key)
         if s is None or s.problem.blocks < limits.FEWEST_BLOCKS:
@@ -56,27 +67,39 @@ def _of_encoders(selections: Selections, declared: Declared) -> list[Finding]:
         delay = SOUND.get(key, (0.0, 0.0))[0] - value
         sure = abs(delay) > max(least, limits.LAG_OVER_ERROR * reach) and reach < limits.SURE_LAG_S
         if sure and _matters(s, key):
-            late[key] = column, delay, reach
-    if len(late) == 2:
-        _, delay, reach = late["K"]
-        if abs(delay - late["S"][1]) < limits.SAME_LAG * abs(delay):  # what they are compared with
-            return _late("position", -delay, reach)
-    return next((_late(*found) for found in late.values()), [])
+            late[key] = Late(column=column, delay=delay, reach=reach)
+    both = len(late) == 2 and abs(late["K"].delay - late["S"].delay) < limits.SAME_LAG * abs(late["K"].delay)
+    if both:  # what they are compared with
+        return Late(column="position", delay=-late["K"].delay, reach=late["K"].reach)
+    return late.get("K", late.get("S"))
 
 
-def _of_currents(selections: Selections, declared: Declared) -> list[Finding]:
+def _of_currents(selections: Selections, declared: Declared) -> Late | None:
     """Currents that come late make a torque that leads by the delay, but for a train's lag.
 
     A loop may change its effort from tick to tick while only every second tick is logged. Sound currents then
     look late against the effort, but not against the motion. So both must show the delay.
     """
     if "T" not in selections or "E" not in selections:
-        return []
+        return None
     s = selections["T"]
     value, reach = _lag(s, "T")
     delay, volts = -value - declared.gear_lag_s, _lag(selections["E"], "E")[0]
     if delay <= max(limits.LATE_CURRENT_S, limits.CURRENT_OVER_ERROR * reach) or not _matters(s, "T"):
-        return []
+        return None
     by_volts = volts - limits.SOUND_LAG_S > limits.CONFIRMED * delay
     seen = by_volts and delay > limits.CONFIRMED * (volts - SOUND_MIDDLE_S)
-    return _late("current", delay, reach) if seen else []
+    return Late(column="current", delay=delay, reach=reach) if seen else None
+
+
+def _of_volts(selections: Selections, declared: Declared) -> Late | None:
+    """Of which column is not known; the emulator's own boards log every second tick of the effort."""
+    s = selections.get("E")
+    if s is None or s.chosen:
+        return None
+    value, reach = _lag(s, "E")
+    slack = limits.SLACK_S + (limits.TICK_S if declared.own else 0.0)
+    sound = limits.SOUND_VOLTS_LAG_S[0] - slack <= value <= limits.SOUND_VOLTS_LAG_S[1] + slack
+    if sound or reach >= limits.SURE_VOLTS_LAG_S or not _matters(s, "E"):
+        return None
+    return Late(column="current or effort", delay=abs(value - SOUND_MIDDLE_S), reach=reach)

@@ -73,6 +73,8 @@ def _without_traces(findings: list[Finding]) -> list[Finding]:
 def _is_trace(f: Finding, of: Finding) -> bool:
     """Whether `f` can be a trace of another one. In one channel only a remainder is: both were fitted."""
     b = _beside(of)
+    if f.name in b.shadows.get(f.channel, ()):
+        return True
     if f.name not in b.consequences.get(of.channel, ()):
         return False
     if f.channel == of.channel == "T" and not _beside(f).leftover:

@@ -13,7 +13,7 @@ from calibration.balances.pickup import TOP, pick_up
 from calibration.balances.view import View
 from calibration.decide import thresholds as limits
 from calibration.decide.parameters import finding_of
-from calibration.decide.rules import clear, larger_than_the_response
+from calibration.decide.rules import clear, displaced, larger_than_the_response, leave_out
 from calibration.decide.select import select
 from calibration.decide.selection import Selection
 from calibration.finding import UNKNOWN, Finding, Parameter
@@ -230,8 +230,10 @@ def beyond_names(s: Selection, scene: Scene) -> tuple[Selection, Selection, list
         # what is little is no function of anything, unless most of it goes with that
         if not more.chosen or (scene.force and little and not clear(more)):
             break
-        together = together.keep([*together.chosen, *more.chosen])
-        findings.append(finding_of(together, len(together.chosen) - 1))
+        kept = leave_out(s, displaced(more.chosen[0])) if not findings else s
+        s, names = kept, together if kept is s else kept
+        together = names.keep([*names.chosen, *more.chosen])
+        findings.append(finding_of(together, len(names.chosen)))
     return s, together, findings
 
 

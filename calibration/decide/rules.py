@@ -14,8 +14,9 @@ from calibration.arrays import Mask
 from calibration.balances.candidate import Candidate
 from calibration.decide import thresholds as limits
 from calibration.decide.accept import refuse, scores
+from calibration.decide.heldout import HeldOut
 from calibration.decide.parameters import parameters_of
-from calibration.decide.scan import fit_with
+from calibration.decide.scan import Contender, fit_with
 from calibration.decide.selection import Selection
 from calibration.finding import UNKNOWN
 from calibration.names import NAMES
@@ -139,18 +140,22 @@ def within_bounds(resolved: float) -> Rule:
     return each(why)
 
 
-def cancelled(s: Selection) -> tuple[int, str] | None:
-    """Of two effects that take most of each other away the one whose absence leaves less on held-out rows.
-
-    Neither is as large as it is said to be.
-    """
+def cancelling(s: Selection) -> tuple[int, int] | None:
+    """Two effects of which one takes most of the other away: neither is as large as it is said to be."""
     each_effect = [s.effect(k)[s.problem.train] for k in range(len(s.chosen))]
     for j, k in combinations(range(len(s.chosen)), 2):
         one, other = each_effect[j], each_effect[k]
         if np.std(one + other) < limits.CANCELS * min(float(np.std(one)), float(np.std(other))):
-            gone = min((j, k), key=lambda k: float(np.nan_to_num(_left(s.without(k)))))
-            return gone, f"cancels against {s.candidates[j + k - gone].say()}"
+            return j, k
     return None
+
+
+def cancelled(s: Selection) -> tuple[int, str] | None:
+    """Of two effects that cancel each other the one whose absence leaves less on held-out rows."""
+    if (pair := cancelling(s)) is None:
+        return None
+    gone = min(pair, key=lambda k: float(np.nan_to_num(_left(s.without(k)))))
+    return gone, f"cancels against {s.candidates[sum(pair) - gone].say()}"
 
 
 def larger_than_the_response(s: Selection, k: int) -> bool:
@@ -210,6 +215,23 @@ def dominant(s: Selection) -> str:
     return name if name and s.held.before**2 - alone[name] >= limits.DOMINANT * taken > 0 else ""
 
 
+def displaced(smooth: Contender) -> Rule:
+    """A name that is worth little beside a smooth function of its domain, and leaves much more than it."""
+    domain = smooth.candidate.domain
+
+    def why(s: Selection, k: int) -> str:
+        c = s.candidates[k]
+        # knots follow weights and lines; friction of one harmonic is a guess at what knots show
+        if c.domain != domain or (domain == "axis_angle" and not NAMES[c.name].waves_of_friction):
+            return ""
+        alone, both = _left(s.put(k, smooth)), _left(s.keep([*s.chosen, smooth]))
+        little = alone - both < limits.REMAINDER * (s.held.before**2 - both)
+        of_all = little and _left(s) > limits.STILL_MISSING**2 * alone
+        return f"a smooth function of {domain} leaves a fraction of what it leaves" if of_all else ""
+
+    return each(why)
+
+
 def feeds_energy(s: Selection) -> tuple[int, str] | None:
     """A name beside which a mass or friction that was positive turns negative: the one without which none
     does and the held-out error is least. None goes where all of them and a term of zero leave less."""
@@ -227,6 +249,14 @@ def feeds_energy(s: Selection) -> tuple[int, str] | None:
     return k, f"beside it {bad} comes out negative, which feeds energy"
 
 
+def harmful(s: Selection) -> tuple[int, str] | None:
+    """The name without which the held-out error is least, where it grows with all of them."""
+    if not s.held.after > s.held.before:
+        return None
+    best = int(np.argmin([_left(x) for x in _each_left_out(s)]))
+    return best, "the held-out error grows with what was found"
+
+
 def below_floor(s: Selection) -> tuple[int, str] | None:
     """Names are for what is above the floor. Unless most goes with them: then the floor is what a coarse
     sensor may hide, and did not. Or they are for fitted rows, as what is far above it there."""
@@ -242,17 +272,32 @@ def clear(s: Selection) -> bool:
     return s.held.share > limits.CLEAR_SHARE and s.held.z > limits.CLEAR_Z
 
 
-def _clear_of_steps(s: Selection) -> bool:
-    """Whether names explain the rows that coarse steps do not spoil: reversals alone raised the floor."""
-    p = s.problem
-    if p.resolved is None:
-        return False
-    rows, noise = p.resolved
+def of_the_steps(s: Selection) -> tuple[int, str] | None:
+    """Names that hardly take anything off the rows which a sensor's coarse steps do not spoil."""
+    held = _off_the_steps(s)
+    if held is None or not held.share <= limits.NOISE_SHARE:
+        return None
+    others = [_off_the_steps(x) for x in _each_left_out(s)]
+    k = int(np.argmin([np.inf if one is None else float(np.nan_to_num(one.after)) for one in others]))
+    return k, "only rows that the position's steps spoil have it"
+
+
+def _off_the_steps(s: Selection) -> HeldOut | None:
+    """Held-out errors on rows that coarse steps do not spoil; None where no steps do, or too few are left."""
+    if s.problem.resolved is None:
+        return None
+    p, rows = s.problem, s.problem.resolved[0]
     # of files in turn the fit stays that of all their rows
     clean = replace(p, valid=p.valid & rows) if p.turned is None else replace(p, turned=p.turned & rows)
-    held = s.held_on(clean)
-    enough = clean.test.sum() >= limits.FEWEST_TOLD
-    return bool(enough and held.before > noise and held.z > SURE_Z and held.share > limits.CLEAR_SHARE)
+    return s.held_on(clean) if clean.test.sum() >= limits.FEWEST_TOLD else None
+
+
+def _clear_of_steps(s: Selection) -> bool:
+    """Whether names explain the rows that coarse steps do not spoil: reversals alone raised the floor."""
+    held = _off_the_steps(s)
+    if held is None or s.problem.resolved is None:
+        return False
+    return held.before > s.problem.resolved[1] and held.z > SURE_Z and held.share > limits.CLEAR_SHARE
 
 
 def _each_left_out(s: Selection) -> list[Selection]:
@@ -284,6 +329,14 @@ def _part(c: Candidate, good: Mask) -> Candidate:
     labels = tuple(x for x, g in zip(c.labels, good, strict=True) if g)
     shape = None if whole is None else lambda p: whole(p)[:, good]
     return replace(c, columns=c.columns[:, good], labels=labels, shape=shape)
+
+
+def negative(s: Selection, standard_errors: float = 0.0) -> str:
+    """The first term that only a fit has negative, by more than some standard errors; or empty."""
+    for name, x in s.problem.named(s.after).items():
+        if name in POSITIVE and x.value < -standard_errors * x.error:
+            return name
+    return ""
 
 
 def _turned(s: Selection) -> str:

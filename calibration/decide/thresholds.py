@@ -165,10 +165,13 @@ SOUND_VOLTS_LAG_S = (0.003, 0.0105)
 SOUND_LAG_S = 0.006
 # s: a measurement behind another frame on the bus, 130 bits each at 1 Mbit/s (FIDELITY.md: not in its age)
 BUS_WAIT_S = 2.6e-4
+TICK_S = 0.005  # s: the loop's, paper 3.3
 CONFIRMED = 0.6  # of the delay seen against the effort, that the torque must lag the motion. ASSUMPTION
+SLACK_S = 0.002  # s beyond SOUND_VOLTS_LAG_S before the volts alone call a column late. ASSUMPTION
 LATE_CURRENT_S = 0.0015  # s against the encoder; a converter's own delay is well below a tick. ASSUMPTION
 # s, the reach of a lag's interval: a wider one says nothing. Of encoders and the velocity. ASSUMPTION
 SURE_LAG_S = 3e-4
+SURE_VOLTS_LAG_S = 1e-3  # s, the same of the volts. ASSUMPTION
 # times its interval's reach that a lag of encoders must be. ASSUMPTION: five standard errors
 LAG_OVER_ERROR = 2.5
 # times its interval's reach that the currents' lag must be. ASSUMPTION: six standard errors

@@ -19,6 +19,7 @@ from calibration.decide.thresholds import FEWEST_BLOCKS, FEWEST_VALIDATED, MARGI
 from calibration.finding import Finding, Parameter
 from calibration.inputs.declaredplant import Declared
 from calibration.names import NAMES
+from calibration.names.name import TOLERANCE
 from calibration.statistics.regression import Fit, inflation
 from plant.effects import REGISTRY
 
@@ -177,3 +178,18 @@ def train_stiffness(s: Selection, scale_error: float) -> tuple[dict[str, Estimat
         return {}, {}
     one = Estimate(1 / compliance.value, compliance.error / compliance.value**2)
     return {"stiffness": one}, {"stiffness": _span("stiffness", one, scale_error, blocks)}
+
+
+def unsettled_reading(stiffness: Parameter | None, d: Declared) -> str:
+    """Why a stiffness is neither declared nor changed: it agrees with another reading than the first."""
+    if stiffness is None:
+        return ""
+    times = stiffness.value / d.stiffness
+    near = [r for r in d.readings if abs(np.log(times / r)) < np.log(TOLERANCE)]
+    if not near or d.readings[0] in near:
+        return ""
+    return (
+        f"channel K: shaft_compliance was close. A train's stiffness of {stiffness.value:.3g} N m/rad is"
+        f" {times:.2f} of Table 1's, if that is one train's, and as declared if it is both trains'. A plant"
+        " file (--plant) or the log's header (train_stiffness_Nm_per_rad) says which"
+    )

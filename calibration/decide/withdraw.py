@@ -1,11 +1,14 @@
 """Names that fitted effects may bear, and which of them they keep once everything has been tried."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from calibration.decide.rules import negative
+from calibration.decide.selection import Selection
+from calibration.decide.thresholds import LUCK_Z
 from calibration.finding import UNKNOWN, Finding, Parameter
 from calibration.names import NAMES
 from calibration.names.bearing_pass import of_a_guess, of_no_stage
@@ -19,22 +22,66 @@ WIDEST = 0.05
 BRISTLE = {"m": 1e-3, "mm": 1.0}  # position unit -> a stroke that bristles may fill (same paper)
 #: (channel, what, why) as in the report's `refused`
 Refused = tuple[str, str, str]
+Against = Callable[[Finding], str]
+"""Why a finding does not keep its name; empty when it does."""
 
 
-def withdraw(
-    findings: Sequence[Finding], controls: Sequence[Mapping[str, Any]]
-) -> tuple[list[Finding], list[Refused]]:
-    """Findings that keep their name, and a refusal for each that what is wrong on purpose fits as well."""
-    kept, refused = list[Finding](), list[Refused]()
+def withdraw(findings: Sequence[Finding], *against: Against) -> tuple[list[Finding], list[Refused]]:
+    """Findings that keep their name, and a refusal for each that does not."""
+    said = [(f, next(filter(None, (says(f) for says in against)), "")) for f in findings]
+    refused = [
+        (f.channel, f"{f.name} on {f.stage}" if f.stage else f.name, f"withdrawn: {why}")
+        for f, why in said
+        if why
+    ]
+    return [f for f, why in said if not why], refused
+
+
+def accepted(f: Finding, controls: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Accepted controls of the finding's name and place, or of its order: a line may have been renamed."""
+    line = f"in place of {f.order:.4g} (" if f.order else None
+    return [
+        c["what"].split(" (")[0]
+        for c in controls
+        if c["accepted"]
+        and ((c["name"], c["stage"], c["harmonic"]) == f.key or bool(line and line in c["what"]))
+    ]
+
+
+def failed_controls(controls: Sequence[Mapping[str, Any]]) -> Against:
+    """What is wrong on purpose must not fit as well."""
+
+    def says(f: Finding) -> str:
+        wrong = accepted(f, controls)
+        return f"accepted as well with {', '.join(wrong)}" if wrong else ""
+
+    return says
+
+
+def against_nature(selections: Mapping[str, Selection]) -> Against:
+    """A fit with a negative mass, friction, resistance or torque constant names nothing in its channel."""
+    wrong = {channel: negative(s, LUCK_Z) for channel, s in selections.items()}
+
+    def says(f: Finding) -> str:
+        name = wrong.get(f.channel)
+        if not name:
+            return ""
+        s, p = selections[f.channel], selections[f.channel].problem
+        return f"beside it {name} would be {p.named(s.after)[name].value:.3g} {dict(p.base_labels)[name]}"
+
+    return says
+
+
+def unnamed(findings: list[Finding], controls: Sequence[Mapping[str, Any]]) -> list[Finding]:
+    """The findings of a rig's balance; what loses its name stays as `unknown`."""
+    out = []
     for f in findings:
-        own = [c for c in controls if (c["name"], c["stage"], c["harmonic"]) == f.key]
-        wrong = ", ".join(c["what"].split(" (")[0] for c in own if c["accepted"])
+        wrong = accepted(f, controls)
         if wrong and f.name != UNKNOWN:
-            what = f"{f.name} on {f.stage}" if f.stage else f.name
-            refused.append((f.channel, what, f"withdrawn: accepted as well with {wrong}"))
-        else:
-            kept.append(f)
-    return kept, refused
+            note = f"{wrong[0]} fits as well: the name {f.name} is withdrawn. {f.note}".strip()
+            f = replace(f, name=UNKNOWN, stage=None, harmonic=None, equivalent=[], note=note)
+        out.append(f)
+    return out
 
 
 def as_told(findings: list[Finding], scene: Scene) -> list[Finding]:

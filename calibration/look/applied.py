@@ -29,6 +29,10 @@ from plant.units import ARCSEC
 UNDONE = (DELAY.name, GAP.name)  # faults of a column that can be undone
 #: columns of a log by their number in a plant file
 LATE = {1: ("position",), 2: ("velocity",), 3: ("current_a", "current_b"), 4: ("motor_a", "motor_b")}
+FALLS = 0.99  # of the held-out error of a channel, that an applied effect must leave less than. ASSUMPTION
+RISES = 1.05  # of another channel's, that it may leave at most. ASSUMPTION
+MUCH = 0.5  # share, of a channel's error: one that falls below it falls by much (ASSUMPTION)
+AT_MOST = 1.15  # times its error, that another channel's may then rise to (ASSUMPTION)
 
 # of the reading's noise per row, rms: two rows differ by so much once in 1e8, so it has moved. arithmetic
 MOVED = 8.0
@@ -177,3 +181,16 @@ def without(result: AxisResult, f: Finding, why: Refusal) -> AxisResult:
     result.findings = [x for x in result.findings if x.name != f.name]
     result.refused.append((f.channel, why.what, why.why))
     return result
+
+
+def judged(before: dict[str, float], again: AxisResult, f: Finding) -> Refusal | None:
+    """None when the held-out error falls once the effect is applied; else why it was not the effect."""
+    after = {k: s.held.before for k, s in again.selections.items() if k in before}
+    falls = [k for k, a in after.items() if a < FALLS * before[k]]
+    rises = [k for k, a in after.items() if a > max(RISES * before[k], again.floors.get(k, 0.0))]
+    # rows are left out where a gap stood: what the others leave is another sample of the same
+    much = min((a / before[k] for k, a in after.items() if before[k] > 0), default=1.0) < MUCH
+    if falls and not [k for k in rises if not much or after[k] > AT_MOST * before[k]]:
+        return None
+    said = ", ".join(f"{k} {before[k]:.3g} to {a:.3g}" for k, a in after.items())
+    return Refusal(f.name, f"applied, the held-out error does not fall: {said}")

@@ -14,7 +14,7 @@ from calibration.decide.residual import Place
 from calibration.decide.selection import Selection
 from calibration.decide.thresholds import AXIS_EARNED
 from calibration.decide.tolerance import CHANGES, ELECTRICAL_ERROR, held_numbers
-from calibration.decide.withdraw import withdraw
+from calibration.decide.withdraw import against_nature, failed_controls, withdraw
 from calibration.finding import Finding, Parameter
 from calibration.inputs.declaration import Rig
 from calibration.inputs.run import Run
@@ -51,7 +51,7 @@ def look_at_axis(runs: list[Run], rig: Rig, options: Options) -> Looked:
     named = merge(result.findings)
     balances = [_balance(result, key, s, {f.name for f in named}) for key, s in result.selections.items()]
     tried = [row for b in balances for row in b.controls]
-    effects, withdrawn = withdraw(named, tried)
+    effects, withdrawn = withdraw(named, failed_controls(tried), against_nature(result.selections))
     before = result.before | within_tolerance(result, effects)
     balances = [_with_missing(result, replace(b, before=before.get(b.key))) for b in balances]
     doubts = [f"{what} was close, but {why}" for _, what, why in withdrawn]

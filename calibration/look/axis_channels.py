@@ -67,6 +67,9 @@ def analyse(runs: list[Run], rig: Rig, options: Options) -> AxisResult:
     options.tell(f"once more without the {fault.name.replace('_', ' ')}")
     again = _look(applied.corrected_runs(result, fault), rig, options)
     before = applied.before_of(result, again, fault)
+    refusal = applied.judged(before, again, fault)
+    if refusal is not None:
+        return applied.without(result, fault, refusal)
     again.before = before
     if fault.name == GAP.name:  # the motors see the crossings that the corrected encoder leaves out
         again.selections["K"] = result.selections["K"]

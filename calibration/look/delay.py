@@ -44,7 +44,7 @@ class Timed:
 def timed(view: View, made: Make, problem: Problem, channel: str, find: Find) -> Timed:
     """A delay, only where names without it do not explain as much; `made`: the balance by its delay, s."""
     scene = scene_of(view, problem.once)
-    delay = effort_delay(scene, lines_over_place(scene))
+    delay, close = effort_delay(scene, lines_over_place(scene))
     if delay is not None and is_hold(delay, view.period_s):
         value = delay.parameters["delay"].value
         held = made(value)
@@ -55,7 +55,7 @@ def timed(view: View, made: Make, problem: Problem, channel: str, find: Find) ->
     plain_loop = min((problem, made(-half), made(half)), key=lambda p: left_by_the_declared(view, p))
     found = find(plain_loop)
     if delay is None:
-        return Timed(plain_loop, found)
+        return Timed(plain_loop, found, close=close)
     moved = made(delay.parameters["delay"].value)
     late = find(moved)
     now, was = late[0].held.after, found[0].held.after

@@ -15,7 +15,7 @@ from calibration.decide.controls import Wrong, controls
 from calibration.decide.merge import merge
 from calibration.decide.residual import Place
 from calibration.decide.selection import Selection
-from calibration.decide.withdraw import withdraw
+from calibration.decide.withdraw import failed_controls, withdraw
 from calibration.finding import Finding
 from calibration.inputs.declaration import Rig
 from calibration.inputs.run import Run
@@ -74,7 +74,7 @@ def look_at_drift(runs: list[Run], rig: Rig | None, options: Options) -> Looked:
     if len(slow) > FEW and not mount.named:  # the log names no mount that is known
         slow = [f"{len(slow)} of the usual worms ({few})"]
     tried = controls(s, partial(wrong_worm, p), reversed_time=False)
-    effects, refused = withdraw(merge(findings(s, mount, span)), tried)
+    effects, refused = withdraw(merge(findings(s, mount, span)), failed_controls(tried))
     effects += jumped
     b = _balance(s, mount, slow, tried)
     needs = [f"{what} was close, but {why}" for _, what, why in refused]

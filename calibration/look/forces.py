@@ -20,7 +20,7 @@ from calibration.decide.selection import Selection
 from calibration.decide.thresholds import AS_MUCH
 from calibration.decide.twins import told_by_the_clock, told_by_the_way, weight_first
 from calibration.decide.verdict import ROWS
-from calibration.decide.withdraw import as_told, of_calibrated, withdraw
+from calibration.decide.withdraw import as_told, of_calibrated, unnamed
 from calibration.finding import UNKNOWN, Finding, Parameter
 from calibration.inputs.run import Run
 from calibration.look.delay import Found, Make, Timed, timed
@@ -177,9 +177,7 @@ def _told(view: View, when: Timed, notes: list[str]) -> Balance:
     findings = settle(of_one_domain(findings, left), left, problem.channel)
     findings += quick_lines(view, problem.channel)
     tried = controls(s, order_beside(s, scene))
-    findings, withdrawn = withdraw(findings, tried)
-    needs = [f"{what} was close, but {why}" for _, what, why in withdrawn]
-    needs += [] if floor and together.held.after <= floor else close(together)
+    needs = [] if floor and together.held.after <= floor else close(together)
     return Balance(
         key=problem.channel,
         row=ROWS[problem.channel],
@@ -187,7 +185,7 @@ def _told(view: View, when: Timed, notes: list[str]) -> Balance:
         floor=floor,
         before=None if when.declared is None else when.declared.held.before,
         declared=when.declared,
-        findings=[*filter(None, [when.offsets, when.first]), *findings],
+        findings=[*filter(None, [when.offsets, when.first]), *unnamed(findings, tried)],
         numbers=calibrated(s),
         controls=tried,
         missing=left_over(together, scene, floor),

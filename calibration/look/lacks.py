@@ -6,6 +6,7 @@ import numpy as np
 
 from calibration.arrays import Array
 from calibration.balances import thresholds as limits
+from calibration.decide.tolerance import unsettled_reading
 from calibration.look.axis_result import AxisResult
 from calibration.look.looked import Balance
 
@@ -29,7 +30,8 @@ def lacks(result: AxisResult, balances: Sequence[Balance]) -> list[str]:
     if out:
         rate = result.motion.speed[result.motion.rows]
         out += motion_lacks(rate[result.motion.ok[result.motion.rows]])
-    return out
+    unsettled = unsettled_reading(result.calibrated.get("stiffness"), result.declared)
+    return [*out, unsettled] if unsettled else out
 
 
 def motion_lacks(rate: Array) -> list[str]:

@@ -89,7 +89,7 @@ def _search(view: View, problem: Problem) -> tuple[Selection, Scene]:
     s = rules.signed(rules.leave_out(s, rules.within_bounds(view.resolved), rules.cancelled))
     # again: what was left out moves the sizes of the others
     s = rules.signed(rules.leave_out(s, rules.worth_little, rules.remainder))
-    return rules.leave_out(s, rules.feeds_energy, rules.below_floor), scene
+    return rules.leave_out(s, rules.feeds_energy, rules.harmful, rules.below_floor, rules.of_the_steps), scene
 
 
 def _select(

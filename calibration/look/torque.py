@@ -10,6 +10,7 @@ from calibration.balances.candidate import Candidate
 from calibration.balances.thresholds import FEWEST_MOVING
 from calibration.balances.torque import Torque, Transmission, torque_problem
 from calibration.decide.broadband import wind
+from calibration.decide.rules import cancelling
 from calibration.decide.select import select
 from calibration.decide.selection import Selection
 from calibration.decide.thresholds import FEWEST_BLOCKS, SAME_ORDER_SHARE
@@ -17,6 +18,7 @@ from calibration.decide.tolerance import NEEDED, calibrated_numbers, changes, se
 from calibration.finding import UNKNOWN, Finding
 from calibration.look.axis_result import AxisResult
 from calibration.look.scene import scene_of_pair
+from calibration.look.volts import DENIED, volts_deny
 from calibration.names import NAMES, offered
 from calibration.names.adc_offset import NAME as OFFSET
 from calibration.statistics.whitening import white_noise
@@ -95,7 +97,20 @@ def _pass(result: AxisResult, torque: Torque) -> tuple[Selection, Mask, Mask]:
         p.valid = moving  # the bristles' history is calibrated, but not known to the sensors' noise
     else:
         candidates = []  # nothing but that history: no torque effect can be told from it
-    return select(p, candidates, result.rng), whole, moving
+    s = select(p, candidates, result.rng)
+    if denied := {c.name for c, beta in s.fitted if volts_deny(result, c, float(beta[0]))}:
+        fresh = [("T", name, DENIED) for name in sorted(denied)]
+        result.refused += [x for x in fresh if x not in result.refused]
+        candidates = [c for c in candidates if c.name not in denied]
+        s = select(p, candidates, result.rng)
+    if pair := cancelling(s):  # again with either, which may have been bent by the other
+        keys = [s.candidates[k].key for k in pair]
+        without = [select(p, [c for c in candidates if c.key != key], result.rng) for key in keys]
+        left = min(range(2), key=lambda k: without[k].held.after)
+        gone, stays = (s.candidates[k].say() for k in (pair[left], pair[1 - left]))
+        result.refused += [("T", gone, f"cancels against {stays}")]
+        s = without[left]
+    return s, whole, moving
 
 
 def _of_a_gear(c: Candidate, found: list[Finding]) -> bool:

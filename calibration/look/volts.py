@@ -29,6 +29,10 @@ from calibration.names.scene import VOLTS, Scene
 
 # standard error of the torque constant, of itself, beyond which the declared one is used. ASSUMPTION
 SURE_CONSTANT = 0.1
+# standard errors of the torque constant, beyond which volts show a change: five, of an onset that leaves at
+# least 4 % of the rows, which tell a fifth as much. ASSUMPTION
+SHOWN = 25.0
+DENIED = "back EMF would show it, and does not"
 
 
 def look_at_volts(view: View, balance: Problem) -> Balance | None:
@@ -94,6 +98,15 @@ def electrical_channel(result: AxisResult) -> tuple[float, dict[str, Array]]:
     result.scale_error = float(np.hypot(result.scale_error, reading_error(s.fitted)))
     result.collect(s, quotient)
     return constant * frame.scale["gear_ratio"], left
+
+
+def volts_deny(result: AxisResult, c: Candidate, size: float) -> bool:
+    """Whether an effect of the torque is a share of the torque constant that volts would show."""
+    kept, shown = NAMES[c.name].torque_kept, SHOWN * result.constant_error  # 0: volts have not told it
+    if kept is None or not NAMES[c.name].beside.of_constant:
+        return False
+    lost = 1.0 - float(np.min(kept(c, size, result.frame.one_clock, 1.0)))  # of a ramp, what this log sees
+    return 0 < shown < lost
 
 
 def weakened(

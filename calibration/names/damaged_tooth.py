@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from calibration.inputs.declaration import Stage
+from calibration.inputs.train import MESH, SHAFT
 from calibration.names.name import Array, Beside, Candidate, Facts, Finding, Made, Name, Scene, tried, value
 from calibration.names.scene import FORCE, SPEED
 
@@ -98,5 +99,5 @@ NAME = Name(
     to_plant=to_plant,
     experiment="turn the part slowly, both ways: a tooth is a pulse at one place, an eccentric part a sine",
     lacks=lacks,
-    beside=Beside(single=True),
+    beside=Beside(single=True, shadows={"K": (SHAFT, MESH)}),
 )

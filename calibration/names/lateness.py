@@ -8,6 +8,7 @@ import numpy as np
 from calibration.arrays import Array
 from calibration.finding import NORMAL, Finding
 from calibration.names import stribeck_change
+from calibration.names.channel_delay import NAME as DELAY
 from calibration.names.channel_delay import against_position, late_column
 from calibration.names.scene import Scene
 from calibration.names.unknown import any_friction_curve, plain
@@ -16,6 +17,9 @@ from calibration.statistics.tails import rms
 
 SIGNIFICANT = 5.0  # standard errors. ASSUMPTION
 MATTERS = 0.02  # of the mean square on held-out rows, beside the flexible fit. ASSUMPTION
+# of the same, from where on a delay is noted: 16 logs without one had 0.3 % at most (development seeds 1031
+# to 1038, 1062, 1063)
+TOLD = 0.005
 SMALLEST = 0.2  # sample periods: a shorter one is within the hold of the output. ASSUMPTION
 LONGEST = 25.0  # sample periods that are looked at: a clock is late by rows. ASSUMPTION
 # likewise: a transport is late by its own time (serial and USB adapters 1 to 50 ms; ASSUMPTION: twice that)
@@ -33,9 +37,9 @@ FEWEST_HELD = 20  # rows that are held out, before they are looked at. ASSUMPTIO
 ALIKE = 0.35  # of the delay: standard deviation over those pieces. ASSUMPTION
 
 
-def effort_delay(s: Scene, lines: Array) -> Finding | None:
-    """The delay of the response's column against the motion, positive when it tells of earlier times;
-    None where there is none.
+def effort_delay(s: Scene, lines: Array) -> tuple[Finding | None, str]:
+    """The delay of the response's column against the motion, positive when it tells of earlier times. Where
+    one stands clear of its error but changes next to nothing, also what would be needed to tell.
 
     It is looked for beside `lines` (n_fitted, k), loops, asymmetry, weight and friction over the speed. Its
     size is then taken beside a friction curve of any smooth shape, where that can be distinguished from it.
@@ -46,7 +50,7 @@ def effort_delay(s: Scene, lines: Array) -> Finding | None:
     s = replace(s, problem=replace(s.problem, valid=quick))
     p, r = s.problem, v.response
     if p.train.sum() < 20 * p.base.shape[1] or r.divide_by:
-        return None
+        return None, ""
     full = v.columns[r.channel] * r.gain
     known = p.y - s.at(full)  # what constants took off
 
@@ -60,17 +64,22 @@ def effort_delay(s: Scene, lines: Array) -> Finding | None:
     delay, error = _converge(s, late, rival)
     reach = max(LONGEST * v.period_s, LONGEST_S)
     if not abs(delay) > max(SIGNIFICANT * error, SMALLEST * v.period_s) or abs(delay) >= reach:
-        return None
+        return None, ""
     before, after = _left(s, p.y, rival), _left(s, late(delay), rival)
     share = 1 - (after / before) ** 2
-    if share < MATTERS or not _everywhere(s, late(delay), delay, rival):
-        return None
+    if not _everywhere(s, late(delay), delay, rival):
+        return None, ""
+    if share < MATTERS:
+        sound = share < TOLD or abs(delay) < HOLD * v.period_s + SLACK * error
+        what = f"{DELAY.name} of {r.channel}, {1e3 * delay:.2g} +- {1e3 * error:.1g} ms, was close"
+        took = f"it takes {100 * max(share, 0.0):.1f} % of the held-out mean square"
+        return None, "" if sound else f"{what} ({took}): quicker turns and a quieter effort"
     curve = np.hstack([known_too, any_friction_curve(s)])
     finer, spread = _converge(s, late, curve)
     if spread < abs(finer) / SIGNIFICANT and finer * delay > 0:
         error = float(np.hypot(spread, (finer - delay) / 2))  # half of what the friction curve moves it by
         delay = finer
-    return late_column(against_position(r.channel, delay), delay, error, share)
+    return late_column(against_position(r.channel, delay), delay, error, share), ""
 
 
 def is_hold(f: Finding, period_s: float) -> bool:

@@ -13,6 +13,10 @@ from calibration.names.name import Array, Beside, Facts, Finding, Made, Name, as
 from calibration.statistics.tails import share_log10
 from plant.units import ARCSEC
 
+#: what a column that folds looks like: between sensors; in torque, volts or command; in any of them
+OF_SENSORS = ("encoder_eccentricity", "roller_ratio", "roller_slip", "channel_delay", "sample_loss")
+OF_FORCES = ("adc_gain", "magnet_weakening", "supply_sag", "command_disturbance", "friction_asymmetry")
+OF_SHAPES = ("structural_mode", "damaged_tooth", UNKNOWN)
 WHOLE_BITS = 1e-6  # off a whole number of bits, share of one, from where on it is said. ASSUMPTION
 EXACT_BITS = 1e-9  # part of a bit, for a column of whole counts: rounding. arithmetic
 OFF_POWER = 0.05  # part of a wrap's size, that a jump may be off it: the motion of a row. ASSUMPTION
@@ -138,5 +142,5 @@ NAME = Name(
     name="log_wrap",
     experiment="read the counter at its full length",
     repairs=("wrap", "signed", "saturation"),
-    beside=Beside(consequences={"S": (UNKNOWN,)}),
+    beside=Beside(consequences={"S": (*OF_SENSORS, *OF_FORCES, *OF_SHAPES)}),
 )

@@ -61,5 +61,5 @@ NAME = Name(
     torque_kept=torque_kept,
     relative={"loss": ("torque_constant", 1)},  # of the constant before it fell
     to_plant=to_plant,
-    beside=Beside(consequences={"E": ("adc_gain",)}),
+    beside=Beside(consequences={"E": ("adc_gain",)}, of_constant=True),
 )

@@ -106,16 +106,19 @@ class Changed:
 class Beside:
     """How a name's findings stand to others'.
 
-    consequences: by the channel it is found in, names whose small findings are its traces. single: a drive
-    has one, whatever its place. leftover: it has no columns and is never more than what is left. settled_by:
-    names of the electrical channel that settle it, as it does itself there; without them they are equivalent
-    to it in the torque. plausible: a finding that is one.
+    consequences: by the channel it is found in, names whose small findings are its traces. shadows: by the
+    others' channel, names that are its traces whatever their size. single: a drive has one, whatever its
+    place. leftover: it has no columns and is never more than what is left. settled_by: names of the
+    electrical channel that settle it, as it does itself there; without them they are equivalent to it in
+    the torque. of_constant: its size is a share of the torque constant. plausible: a finding that is one.
     """
 
     consequences: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    shadows: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     single: bool = False
     leftover: bool = False
     settled_by: tuple[str, ...] = ()
+    of_constant: bool = False
     plausible: Callable[[Finding], bool] = lambda _: True
 
 

@@ -1,10 +1,12 @@
 """Volts that every pulse of a bridge loses, whatever its length: a dead time, or drops of its switches."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from calibration.names.name import VOLTS, Array, Candidate, Name, Scene, candidate, grid
+from calibration.finding import UNKNOWN
+from calibration.names.name import VOLTS, Array, Candidate, Finding, Name, Scene, candidate, grid, value
 
 MOST = 0.2  # of the supply. ASSUMPTION: a bridge that loses more is broken
 # duties where the search for a dead band begins; 0.3 to 5 % of a period is what bridges lose. ASSUMPTION
@@ -12,6 +14,8 @@ KNEES = (0.003, 0.006, 0.012, 0.025, 0.05)
 ABOVE = 0.5  # quantile of the duties that drive, above which no dead band's knee lies. ASSUMPTION
 SHORTEST = 0.01  # of the rows, that may have pulses shorter than a dead band taken for a constant. ASSUMPTION
 SMALLEST = 1e-4  # part of a period: a knee is no smaller. arithmetic
+REACH = 2.0  # times the dead band, that a knee may be at. ASSUMPTION: switches' resistances bend its corner
+SHARP = 0.005  # part of a period beside that. ASSUMPTION
 
 
 def columns(s: Scene) -> list[Candidate]:
@@ -53,6 +57,15 @@ def lacks(s: Scene) -> str:
     return "a column of the duty: measured volts have lost it already" if measured else ""
 
 
+def told(f: Finding) -> Finding:
+    """A bridge that loses a part of every pulse loses shorter pulses whole, and no longer ones in part. One
+    whose loss grows over far longer pulses is something else over the command."""
+    if value(f, "knee") < REACH * value(f, "deadband") + SHARP:
+        return f
+    note = "volts are lost in proportion to the duty up to the knee: no dead band does so"
+    return replace(f, name=UNKNOWN, note=note)
+
+
 NAME = Name(
     name="pwm_deadband",
     channels=(VOLTS,),
@@ -60,6 +73,7 @@ NAME = Name(
     experiment="measure the volts at the motor's leads: brushes drop their volt behind them, a dead "
     "band before",
     lacks=lacks,
+    told=told,
     nuisances={
         "knee": "",
         "before_split": "found before the split between the motors, the plant has it behind",

@@ -180,6 +180,7 @@ NAME = Name(
     channels=(FORCE, SENSORS, VOLTS),
     columns=columns,
     experiment="repeat the run: what is fixed to angle, to time or to neither tells where to look",
+    told=shapes.followed,
     stamps=clock_jumps,
     to_plant=to_plant,
     beside=Beside(consequences={"T": ("wind_torque",)}),

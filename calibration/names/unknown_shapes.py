@@ -9,12 +9,13 @@ import numpy as np
 from calibration.balances.candidate import waves
 from calibration.balances.recursions import stop_operator
 from calibration.balances.view import View
-from calibration.finding import UNKNOWN
+from calibration.finding import UNKNOWN, Finding
 from calibration.names.lines import line, of_stage
 from calibration.names.name import Array, Candidate, Scene, candidate
 from calibration.names.unnamed import HARMONICS
 
 SLOW = 4  # knots over time of a scale that moves. ASSUMPTION
+FOLLOWS = 2.0  # share: a lagging motor's current that follows the leading one's has 1. ASSUMPTION
 WIDTHS = (0.02, 0.05, 0.1, 0.2, 0.4)  # part of the usual stroke, of the widest of several loops. ASSUMPTION
 
 
@@ -98,16 +99,22 @@ def bend(s: Scene) -> list[Candidate]:
 def of_volts(s: Scene) -> list[Candidate]:
     """Columns of an electrical balance that have no name in the catalogue."""
     w = s.windings
-    if w is None or s.pair is None:
+    if w is None or w.counter is None or s.pair is None:
         return _brushes(s)
+    c, (a, b) = w.counter, np.split(w.rate, 2)
+    # a lagging motor whose current follows the leading one's lacks that one's back-EMF, times its share
+    leading = np.tile(np.where(c.lagging[: len(a)] > 0, b, a), 2)
+    column = w.constant * w.at(c.share) * c.lagging * leading
+    following = over("current", column, ("following", "1"), sign=1, most=FOLLOWS)
     # brushes over the angle of either motor, as a resistance and as a voltage
     turned = waves(s.view.x[s.view.rows] * s.pair.train.ratio, range(1, HARMONICS + 1))
     more: dict[str, Any] = {"kind": "line", "stage": "motor", "harmonic": 1}
-    return [
+    brushes = [
         over("motor_angle", turned * weight[:, None], ("amplitude", unit), fixed=motor, **more)
         for rows, motor in s.motors
         for weight, unit in ((rows, "V"), (rows * w.at(w.current), "ohm"))
     ]
+    return [following, *brushes]
 
 
 def _brushes(s: Scene) -> list[Candidate]:
@@ -115,3 +122,10 @@ def _brushes(s: Scene) -> list[Candidate]:
     motors = [replace(g, harmonics=HARMONICS, listed=()) for g in s.view.rig.stages if g.of_motor]
     blank = line(s, UNKNOWN, 0.0, ("amplitude", "ohm"), domain="motor_angle")
     return [c for g in motors for c in of_stage(s, g, blank, s.view.columns["current"])]
+
+
+def followed(f: Finding) -> Finding:
+    """A current that follows the other motor's, said in words: the catalogue has no name for it."""
+    if "following" not in f.parameters:
+        return f
+    return replace(f, note="the lagging motor's current follows the leading one's, not its own duty")

@@ -9,7 +9,7 @@ from calibration.balances.problem import Problem
 from calibration.decide.heldout import HeldOut
 from calibration.decide.thresholds import AXIS_EARNED
 from calibration.decide.verdict import effect_as_dict, judge, kind_of, probability
-from calibration.decide.withdraw import withdraw
+from calibration.decide.withdraw import against_nature, failed_controls, withdraw
 from calibration.finding import Finding, Parameter
 from calibration.look.lacks import motion_lacks
 from calibration.look.looked import Balance
@@ -60,7 +60,7 @@ def test_a_name_whose_control_was_accepted_is_withdrawn_and_not_lost() -> None:
         {"what": "time reversed (gear_mesh on mesh3)", "accepted": True, **place},
         {"what": "sign flipped", "accepted": False, "name": "brake_drag", "stage": None, "harmonic": None},
     ]
-    kept, refused = withdraw([finding(), Finding("brake_drag", "T", "time")], tried)
+    kept, refused = withdraw([finding(), Finding("brake_drag", "T", "time")], failed_controls(tried))
     assert [f.name for f in kept] == ["brake_drag"]
     assert refused == [("T", "gear_mesh on mesh3", "withdrawn: accepted as well with time reversed")]
     assert judge([], ["a second speed"]) == ("cannot tell", "a second speed")
@@ -112,6 +112,38 @@ def test_a_phase_is_found_on_rows_that_are_half_missing(square: bool) -> None:
     y = (np.sign(wave) if square else wave)[kept] + 0.7
     found = _phase(x[kept], y, square)
     assert np.angle(np.exp(1j * (found - 2.0))) == pytest.approx(0.0, abs=0.05 if square else 1e-6)
+
+
+def test_a_fit_with_a_negative_inertia_names_nothing() -> None:
+    zero, every = np.zeros(10), np.ones(10, dtype=bool)
+    run = zero.astype(np.int64)
+    labels = [("inertia", "kg m2"), ("coulomb", "N m")]
+    p = Problem(
+        channel="T",
+        unit="N m",
+        y=zero,
+        base=np.zeros((10, 2)),
+        base_labels=labels,
+        t=zero,
+        run=run,
+        session=run,
+        valid=every,
+        held=every,
+        period_s=1.0,
+    )
+    for inertia, kept in ((-5.0, 0), (-0.5, 1), (5.0, 1)):  # half a standard error below zero is no sign
+        fit = type("F", (), {"beta": np.array([inertia, 3.0]), "errors": np.ones(2)})()
+        s = type("S", (), {"problem": p, "after": fit})()
+        found, refused = withdraw([finding()], against_nature({"T": s}))
+        assert (len(found), len(refused)) == (kept, 1 - kept)
+    assert not refused
+    _, ((*_, why),) = withdraw([finding()], against_nature({"T": _with(s, -5.0)}))
+    assert "inertia would be -5" in why
+
+
+def _with(s: Any, inertia: float) -> Any:
+    s.after.beta = np.array([inertia, 3.0])
+    return s
 
 
 def test_a_free_order_is_moved_within_its_cell_and_never_onto_a_stage() -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from calibration.command import calibrate
-from calibration.decide.broadband import wind
+from calibration.decide.broadband import follows_direction, wind
 from plant.model import default_files, load
 from plant.parts import EffectModel
 from tests.calibration.logs import effect, write_logs
@@ -67,3 +67,20 @@ def test_a_wind_has_its_corner(tau: float) -> None:
     # the corner, 1 / (2 pi time), is what the 15 % belong to: it is read from the lag of half the correlation
     assert 1 / found.parameters["correlation_time"].value == pytest.approx(1 / tau, rel=0.15)
     assert found.parameters["deviation"].value == pytest.approx(1.0, rel=0.1)
+
+
+def test_what_turns_over_with_the_direction_is_no_wind() -> None:
+    e = ornstein_uhlenbeck(20.0, 2000.0, 0.05, 4)
+    rate = 1e-3 * np.sign(np.sin(2 * np.pi * np.arange(len(e)) * 0.05 / 40.0))
+    for torque, friction in ((e, False), (e * np.sign(rate), True)):
+        p = regression(torque, np.column_stack([np.ones(len(e)), rate]), 0.05)
+        assert follows_direction(torque, p) is friction
+        found = wind(torque, p, 0.1)
+        assert found is not None and (found.name == "unknown") is friction
+
+
+@pytest.mark.slow
+def test_a_compliant_train_has_no_other_law_of_the_command(tmp_path: Path) -> None:
+    """A stiffness of two fifths: the error of the command is at the rounding of the effort."""
+    report = answer(tmp_path, effect("shaft_compliance", compliance=(0.1, "arcsec/(N m)")))
+    assert [e["name"] for e in report["effects"]] == ["shaft_compliance"]

@@ -319,6 +319,19 @@ def test_two_functions_are_the_most_of_two_sensors() -> None:
     assert len(beyond(np.asarray(y), 0.3, False, effort=third)[2]) == 2
 
 
+def test_a_name_that_a_function_of_its_domain_displaces_is_refused() -> None:
+    speed = np.roll(X, 1234)
+    s = of(3.0 * np.sin(2 * np.pi * speed) + 0.3 * NOISE, floor=0.1)
+    one = fit_with(
+        s.problem, s.problem.base, replace(term("viscous_change", speed[:, None]), domain="velocity")
+    )
+    assert one is not None
+    s = s.keep([one])
+    alone, together, (found,) = beyond_names(s, scene())
+    assert found.domain == "velocity" and [c.name for c in together.candidates] == [UNKNOWN]
+    assert not alone.chosen and "a smooth function of velocity" in alone.refused[-1].why
+
+
 def test_a_quick_line_of_the_column_is_an_unknown_of_time(monkeypatch: pytest.MonkeyPatch) -> None:
     line: Callable[[Any, float], Any] = lambda view, top: (12.5, 0.3)  # noqa: E731
     monkeypatch.setattr(residual, "pick_up", line)

@@ -12,7 +12,7 @@ from calibration.decide.residual import domain_share
 from calibration.decide.select import select
 from calibration.decide.thresholds import MODEL_ERROR, STILL_MISSING, Earned
 from calibration.decide.verdict import judge, kind_of, probability
-from calibration.decide.withdraw import withdraw
+from calibration.decide.withdraw import failed_controls, unnamed, withdraw
 from calibration.finding import Finding, Parameter
 from calibration.statistics.tails import middle
 from tests.calibration.decide.made import problem, term
@@ -85,16 +85,26 @@ def test_a_name_keeps_its_place_unless_its_own_control_was_accepted() -> None:
     drag = Finding("drag", "T", "time")
     place = {"name": "gear", "stage": "shaft1", "harmonic": 1}
     accepted = [{"what": "time reversed (gear)", "accepted": True, **place}]
-    kept, refused = withdraw([gear, drag], accepted)
+    kept, refused = withdraw([gear, drag], failed_controls(accepted))
     assert kept == [drag]
     assert refused[0][:2] == ("T", "gear on shaft1") and "time reversed" in refused[0][2]
     other = [
         {**accepted[0], "harmonic": 2},
         {**accepted[0], "what": "order 2 in place of 3 (brake)", "name": "brake"},
     ]
-    assert withdraw([gear, drag], other) == ([gear, drag], [])
-    none = [{**accepted[0], "accepted": False}]
+    assert withdraw([gear, drag], failed_controls(other)) == ([gear, drag], [])
+    none = failed_controls([{**accepted[0], "accepted": False}])
     assert withdraw([gear, drag], none) == ([gear, drag], [])
+
+
+def test_a_rigs_line_whose_order_may_be_another_is_unknown() -> None:
+    line = Finding("gear", "T", "axis_angle", order=3.0, note="period 120 deg")
+    place = {"name": "bearing", "stage": None, "harmonic": None}  # as it was called when the control was made
+    wrong = [{"what": "order 3.2 in place of 3 (bearing)", "accepted": True, **place}]
+    assert [f.name for f in unnamed([line], [{**wrong[0], "accepted": False}])] == ["gear"]
+    (gone,) = unnamed([line], wrong)
+    assert (gone.name, gone.stage) == ("unknown", None)
+    assert gone.note == "order 3.2 in place of 3 fits as well: the name gear is withdrawn. period 120 deg"
 
 
 def test_verdicts() -> None:

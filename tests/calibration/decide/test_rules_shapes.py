@@ -10,11 +10,13 @@ from calibration.balances.candidate import Candidate
 from calibration.decide import rules
 from calibration.decide.rules import (
     below_floor,
-    cancelled,
+    cancelling,
     feeds_energy,
     larger_than_the_response,
     lesser_of_one_order,
     needless,
+    negative,
+    of_the_steps,
     signed,
     superfluous,
     within_bounds,
@@ -159,8 +161,25 @@ def test_two_that_leave_less_than_half_of_the_lesser_cancel(
     s = of(10 * A - 10 * (A - share * B) + 3 * C, one("x", A), one("c", C), one("y", A - share * B))
     left = 10 * share / (10 * np.hypot(1, share) if share > 1 else 10)
     assert (left < 0.5) == (pair is not None)
-    gone = cancelled(s)
-    assert (gone is not None) == (pair is not None) and (gone is None or gone[0] in (pair or ()))
+    assert cancelling(s) == pair
+
+
+@pytest.mark.parametrize(
+    ("size", "errors", "wrong"), [(-1.0, 1.0, "viscous"), (1.0, 1.0, ""), (-1.0, 1e6, "")]
+)
+def test_the_first_declared_term_that_is_negative_is_said(size: float, errors: float, wrong: str) -> None:
+    base = np.column_stack([C, A, B])
+    labels = [("offset", "N m"), ("viscous", "N m s"), ("coulomb", "N m")]
+    assert negative(of(-C + size * A + B, base=base, base_labels=labels), errors) == wrong
+    if errors == 1.0 and size < 0:
+        assert negative(of(-C + size * A + B, base=base, base_labels=labels)) == wrong
+
+
+def test_a_term_that_is_negative_by_half_its_error_is_so_but_not_beyond_it() -> None:
+    labels = [("viscous", "N m s")]
+    fit = of(0 * A, base=A[:, None], base_labels=labels).before
+    s = of(-(fit.beta[0] + 0.5 * fit.errors[0]) * A, base=A[:, None], base_labels=labels)
+    assert (negative(s), negative(s, 1.0)) == ("viscous", "")
 
 
 def test_parts_of_the_wrong_sign_go_and_the_others_stay() -> None:
@@ -260,3 +279,18 @@ def test_below_the_floor_names_stay_that_rows_off_the_steps_need(
     assert below_floor(of(y, one("brake_drag", A), floor=20.0)) is not None
     few = CLEAN & ~s.problem.held
     assert below_floor(of(y, one("brake_drag", A), floor=20.0, resolved=(few, noise))) is not None
+
+
+def test_of_two_names_the_one_goes_that_clean_rows_do_not_need() -> None:
+    """Rows off the steps do not have the first one, whose size comes from spoilt rows."""
+    y = np.where(CLEAN, 0.0, B + C)
+    some = [one("load_friction", np.where(CLEAN, A, C)), one("brake_drag", np.where(CLEAN, 0.0, B))]
+    for k in (0, 1):
+        found = of_the_steps(of(y, some[k], some[1 - k], resolved=(CLEAN, NOISE)))
+        assert found == (k, "only rows that the position's steps spoil have it")
+    assert of_the_steps(of(y, *some)) is None
+    assert of_the_steps(of(y + 2 * A, one("brake_drag", A), resolved=(CLEAN, NOISE))) is None
+    few = np.isin(np.arange(ROWS), np.flatnonzero(problem(A).held)[:59]) | ~problem(A).held
+    assert of_the_steps(of(y, one("brake_drag", B), resolved=(few, NOISE))) is None
+    more = np.isin(np.arange(ROWS), np.flatnonzero(problem(A).held)[:60]) | ~problem(A).held
+    assert of_the_steps(of(0 * A, one("brake_drag", B), resolved=(more, NOISE))) is not None

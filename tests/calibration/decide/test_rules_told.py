@@ -13,8 +13,11 @@ from calibration.decide.heldout import HeldOut
 from calibration.decide.rules import (
     below_floor,
     below_surrogates,
+    cancelled,
     clear,
+    displaced,
     dominant,
+    harmful,
     remainder,
     worth_little,
 )
@@ -120,6 +123,45 @@ def test_the_strongest_takes_nineteen_twentieths_alone(alone: float, name: str) 
     assert dominant(Told([], {"": 100.0})) == ""  # type: ignore[arg-type]
     twice = Told(["brake_drag", "play", "brake_drag"], {"bbp": 10.0, "bb": alone, "p": 90.0})
     assert dominant(twice) == name  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("after", "gone"), [(100.0, None), (101.0, 1)])
+def test_what_makes_the_held_out_error_grow_goes_the_worst_first(after: float, gone: int | None) -> None:
+    s = Told(["brake_drag", "play"], {"bp": after, "b": 90.0, "p": 95.0})
+    assert asked(harmful, s) == gone
+
+
+@pytest.mark.parametrize(
+    ("name", "domain", "left", "gone"),
+    [
+        # smooth alone 10, both 8: the name is worth 2 of 92, and leaves four times of what the other does
+        ("brake_drag", "time", {"b": 41.0, "s": 10.0, "bs": 8.0}, True),
+        ("brake_drag", "velocity", {"b": 41.0, "s": 10.0, "bs": 8.0}, False),
+        ("brake_drag", "time", {"b": 39.0, "s": 10.0, "bs": 8.0}, False),
+        ("brake_drag", "time", {"b": 41.0, "s": 10.0, "bs": 7.2}, False),
+        ("torque_ripple", "axis_angle", {"t": 41.0, "s": 10.0, "st": 8.0}, False),
+        ("position_friction", "axis_angle", {"p": 41.0, "s": 10.0, "ps": 8.0}, True),
+    ],
+)
+def test_a_smooth_function_displaces_a_name_of_its_domain(
+    name: str, domain: str, left: dict[str, float], gone: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(DOMAINS, "position_friction", "axis_angle")
+    smooth: Any = SimpleNamespace(candidate=replace(term("smooth", NONE), domain=domain))
+    found = displaced(smooth)(Told([name], left))  # type: ignore[arg-type]
+    assert (found is not None) == gone
+    assert found is None or f"a smooth function of {domain} leaves" in found[1]
+
+
+@pytest.mark.parametrize(("left", "gone"), [({"b": 5.0, "p": 6.0}, 1), ({"b": 6.0, "p": 5.0}, 0)])
+def test_of_two_that_cancel_the_one_whose_absence_leaves_less_goes(
+    left: dict[str, float], gone: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(rules, "cancelling", lambda s: (0, 1))
+    s = Told(["brake_drag", "play"], {"bp": 4.0, **left})
+    assert cancelled(s) == (gone, f"cancels against {s.names[1 - gone]}")  # type: ignore[arg-type]
+    monkeypatch.setattr(rules, "cancelling", lambda s: None)
+    assert cancelled(s) is None  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(("share", "z", "found"), [(0.6, 4.0, True), (0.4, 4.0, False), (0.6, 2.0, False)])

@@ -13,8 +13,11 @@ from calibration.decide.rules import (
     dominant,
     each,
     feeds_energy,
+    harmful,
     leave_out,
     lesser_of_one_order,
+    negative,
+    of_the_steps,
     remainder,
     superfluous,
     worth_little,
@@ -96,7 +99,7 @@ def test_what_hardly_adds_anything_is_left_out_and_what_does_stays() -> None:
     assert [
         c.name for c in leave_out(of({"brake_drag": 2.0, "cable_wrap": 0.0}), worth_little).candidates
     ] == ["brake_drag"]
-    assert len(leave_out(of({"brake_drag": 2.0, "load_friction": 1.0}), worth_little).chosen) == 2
+    assert len(leave_out(of({"brake_drag": 2.0, "load_friction": 1.0}), worth_little, harmful).chosen) == 2
 
 
 def test_a_small_name_beside_one_that_explains_nearly_all_is_its_remainder() -> None:
@@ -111,7 +114,7 @@ def test_without_held_out_rows_nothing_is_compared() -> None:
     s = of({"brake_drag": 2.0, "cable_wrap": 0.0})
     blind = s.on(replace(s.problem, held=np.zeros(ROWS, dtype=bool)))
     assert np.isnan(blind.held.after) and dominant(blind) == ""
-    assert len(leave_out(blind, worth_little, remainder).chosen) == 2
+    assert len(leave_out(blind, worth_little, remainder, harmful).chosen) == 2
 
 
 def test_names_are_for_what_is_above_the_floor() -> None:
@@ -120,6 +123,21 @@ def test_names_are_for_what_is_above_the_floor() -> None:
         s.problem.floor = 10.0
     assert below_floor(faint) is not None  # most of what is left stays
     assert below_floor(clear) is None  # a coarse sensor's floor may hide it, and did not
+
+
+@pytest.mark.parametrize("in_turn", [False, True])
+def test_what_only_rows_that_coarse_steps_spoil_have_is_no_effect(in_turn: bool) -> None:
+    """Every second row is spoilt; of two names the one goes that is worse on the others."""
+    s = of({"brake_drag": 2.0, "load_friction": 0.0})
+    clean = np.arange(ROWS) % 2 == 0
+    for k, where, stays in ((0, clean, None), (1, ~clean, 1)):
+        column = np.where(where, s.candidates[k].columns[:, 0], 0.0)
+        y = 2.0 * column + NOISE * np.random.default_rng(9).standard_normal(ROWS)
+        p = replace(s.problem, y=y, resolved=(clean, NOISE), session=s.problem.run)
+        p = p.in_turn() if in_turn else p
+        alone = Selection.of(p)
+        alone = alone.keep([contender(alone, term(s.candidates[k].name, column[:, None]))])
+        assert (of_the_steps(alone) is None) == (stays is None)
 
 
 def test_of_two_names_at_one_order_the_lesser_goes_where_it_adds_little() -> None:
@@ -133,6 +151,15 @@ def test_of_two_names_at_one_order_the_lesser_goes_where_it_adds_little() -> Non
     assert found is not None and found[0] == 1 and "cogging" in found[1]
     apart = replace(bent, order=3.1)
     assert lesser_of_one_order(s.put(1, replace(s.chosen[1], candidate=apart))) is None
+
+
+@pytest.mark.parametrize(("size", "wrong"), [(-3.0, "inertia"), (3.0, ""), (-0.001, "")])
+def test_a_mass_that_comes_out_negative_beyond_its_error_is_said(size: float, wrong: str) -> None:
+    rng = np.random.default_rng(5)
+    x = rng.standard_normal((ROWS, 1))
+    p = problem(size * x[:, 0] + NOISE * rng.standard_normal(ROWS), base=x)
+    p.base_labels = [("inertia", "kg m2")]
+    assert negative(Selection.of(p), 2.0) == wrong
 
 
 def test_a_candidate_moves_in_what_its_columns_depend_on_and_in_nothing_else() -> None:

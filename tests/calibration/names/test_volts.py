@@ -5,7 +5,7 @@ import pytest
 
 from calibration.balances.problem import Problem
 from calibration.balances.volts import Counter, Windings
-from calibration.finding import Finding, Parameter
+from calibration.finding import UNKNOWN, Finding, Parameter
 from calibration.names import NAMES
 from calibration.names.inplant import Facts
 from calibration.names.scene import Scene
@@ -92,6 +92,9 @@ def test_a_knee_is_no_parameter_of_a_dead_band() -> None:
     band = {"deadband": Parameter(0.01, "1"), "knee": Parameter(0.012, "1")}
     f = NAMES["pwm_deadband"].retold(Finding("pwm_deadband", "E", "command", parameters=band), {})
     assert list(f.parameters) == ["deadband"] and f.note == ""
+    wide = band | {"knee": Parameter(0.2, "1")}
+    other = NAMES["pwm_deadband"].retold(Finding("pwm_deadband", "E", "command", parameters=wide), {})
+    assert other.name == UNKNOWN and "knee" in other.parameters
 
 
 def test_what_the_plant_lacks_is_noted_and_stands_in_its_remarks() -> None:
