@@ -25,7 +25,7 @@ def by_one_column(
         scene.model = model
         as_little = alone.held.after <= STILL_MISSING * max(together.held.after, s.problem.floor)
         theirs = s.keep([x for x in s.chosen if x.candidate.domain in OTHER_COLUMNS])
-        if theirs.held.after <= STILL_MISSING * alone.held.after:
+        if theirs.chosen and theirs.held.after <= STILL_MISSING * alone.held.after:
             return s, together, findings
         if alone.chosen and as_little and alone.held.taken > AS_MUCH * together.held.taken:
             why = f"{alone.candidates[0].say()} over {alone.candidates[0].domain} alone takes as much"

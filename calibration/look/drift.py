@@ -39,7 +39,7 @@ TOOTH_APART = 0.3
 WRONG_PERIODS = (0.9, 1.1)  # of a worm's rate: a tenth off is another wheel on any mount. ASSUMPTION
 FEW = 4  # parts of a mount, whose turns are looked at for what is left. ASSUMPTION
 OF_ALL_FRAMES = "offsets, drift and the dithers' gain are fitted to all frames, before and after alike"
-TURN = "over the turn of "  # words of where a rest lives
+TURN = "the turn of "  # words of where a rest lives
 NEED = "guide one section for at least two turns of the worm (half an hour for most mounts), without a slew"
 ON_THE_CLOCK = (
     "whole sections are held out, so the clock carries the worm's phase there, and a slew breaks it."
@@ -80,7 +80,7 @@ def look_at_drift(runs: list[Run], rig: Rig | None, options: Options) -> Looked:
     needs = [f"{what} was close, but {why}" for _, what, why in refused]
     if slow:
         needs = [f"a longer section without a slew: two turns, for {'; '.join(slow)}"]
-    if b.missing is not None and b.missing.where.startswith(TURN):  # of a part that the log names
+    if b.missing is not None and b.missing.where.startswith(f"over {TURN}"):  # of a part that the log names
         needs.append(b.still)
     effects, needs = looked.unnamed_where_missing(effects, [*needs, *b.short], [b])
     return Looked(
@@ -110,10 +110,7 @@ def _balance(s: Selection, mount: Mount, slow: list[str], tried: list[dict[str, 
         spectrum=Spectrum(turns=p.t, stages=stages, label="period, s", periods=True),
     )
     near = stages if len(stages) <= FEW else {}  # usual wheels that were only tried say nothing
-    turns = [
-        Place(f"{TURN.removeprefix('over ')}{name}", None, (clock * rate) % 1.0)
-        for name, rate in near.items()
-    ]
+    turns = [Place(f"{TURN}{name}", None, (clock * rate) % 1.0) for name, rate in near.items()]
     missing = looked.missing_over(b, [Place("time", None, p.t), *turns])
     if missing is None:
         return b

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.balances.problem import Problem
 from calibration.balances.view import View
 from calibration.decide.thresholds import STILL_MISSING
@@ -24,9 +25,7 @@ def law_of_its_loop(view: View, p: Problem, floor: float | None) -> str:
     if not view.dynamic or view.response.channel not in COMMANDED or not floor:
         return ""
     rows, unit = p.valid, view.unit
-    x = np.column_stack([np.ones(len(p.y)), view.x[view.rows], view.at(view.smoothed(view.rate(view.x)))])[
-        rows
-    ]
+    x = _law(view, view.x[view.rows])[rows]
     constant, slope, rate = solve(x, p.y[rows])
     least = min(STILL_MISSING * floor, EXACT * float(np.std(p.y[rows])))
     forces = rms(p.plain_fit(rows)[1][rows])  # a mass along one sine pulls back in proportion, too
@@ -44,8 +43,7 @@ def follows(view: View, p: Problem, left: float) -> list[str]:
     p, channel, unit = p.once, view.response.channel, view.unit
     if channel not in COMMANDED or not p.test.any():
         return []
-    error = view.at(view.columns["reference"] - view.x)
-    x = np.column_stack([np.ones(len(p.y)), error, view.at(view.smoothed(view.rate(view.x)))])
+    x = _law(view, view.at(view.columns["reference"] - view.x))
     beta = solve(x[p.train], p.y[p.train])
     law = rms(p.y[p.test] - x[p.test] @ beta)
     _, gain, damping = beta
@@ -55,3 +53,8 @@ def follows(view: View, p: Problem, left: float) -> list[str]:
     told += f" {abs(damping):.3g} {unit} s/{view.angle_unit} x velocity"
     told += f" leaves {law:.3g} {unit} where the forces leave {left:.3g}"
     return [f"{channel} is what its loop commands: {told}. Declare the law as `controller`"]
+
+
+def _law(view: View, place: Array) -> Array:
+    """Columns (n_fitted, 3) of a loop's law: a constant, the place or its error, the rate."""
+    return np.column_stack([np.ones(len(place)), place, view.at(view.smoothed(view.rate(view.x)))])

@@ -93,7 +93,7 @@ def doubts(view: View, told: Balance) -> list[str]:
     """What makes an answer worth little: a floor far above what is left, an effort without its sign."""
     channel, s, unit = view.response.channel, told.selection, view.unit
     out = []
-    if told.floor and not told.findings and told.floor > ABOVE * s.held.after:
+    if told.floor and not told.findings and told.floor > ABOVE * s.held.after > 0:
         rest = f"{told.floor:.3g} {unit}, {told.floor / s.held.after:.1f} times what is left"
         out.append(f"{channel}: its floor is {rest}: what is smaller than that does not show")
     y, way = view.columns.get(channel), view.direction[view.ok]

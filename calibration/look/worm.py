@@ -240,7 +240,7 @@ def settle(problem: Problem, candidates: list[Candidate], named: bool) -> Select
                 why = "a harmonic is larger than the turn itself, on a wheel that is only assumed"
             if not why and (other := _elsewhere(s, k)):
                 moved += other
-                better = f"a period of {1 / (other[0].frequency or 1.0):.1f} s predicts better"
+                better = f"a period of {1 / _rate(other[0]):.1f} s predicts better"
                 why = better if x.candidate.stage else ""
             if why:
                 refused.append(Refusal(x.candidate.say(), why))

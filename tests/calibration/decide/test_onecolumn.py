@@ -50,9 +50,12 @@ TWO = [over("axis_angle", PLACE), term("coulomb_change", WAY)]
 LOADED = 2.0 * (PLACE + WAY)[:, 0] + NOISE
 
 
-def test_a_function_of_the_load_that_takes_as_much_stands_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("noise", [1.0, 20.0])  # of which the loud one leaves nine tenths of the square
+def test_a_function_of_the_load_that_takes_as_much_stands_alone(
+    noise: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
     functions = [over("time", PLACE), over("current", PLACE + WAY), over("temperature", HEAT)]
-    together, s, alone, findings = asked(monkeypatch, LOADED, TWO, functions)
+    together, s, alone, findings = asked(monkeypatch, LOADED + (noise - 1.0) * NOISE, TWO, functions)
     assert s.chosen == [] and len(together.chosen) == 2
     assert [c.domain for c in alone.candidates] == ["current"]
     assert [f.domain for f in findings] == ["current"]
