@@ -1,10 +1,9 @@
 """From a plant model to the world array of the kernels."""
 
-from collections import namedtuple
 from collections.abc import Mapping
 from math import exp
 from operator import attrgetter
-from typing import Any, get_args
+from typing import NamedTuple, get_args
 
 import numpy as np
 
@@ -39,18 +38,55 @@ _PARTS = {
 }  # fmt: skip
 PATHS = {name: f"{part}.{name}" for part, names in _PARTS.items() for name in names}
 """Where in a plant file the declared ones of `Numbers` stand."""
-_named: Any = namedtuple  # a type checker wants the names written out
-Numbers: Any = _named(
-    "Numbers",
-    (*PATHS, "diode", "diode_drop", "stage_drop", "compliance", "swinging", "angle", "incremental_phase",
-     "phase_a", "phase_b"),
-)  # fmt: skip
-"""The numbers of one axis, SI units: the declared ones by their names in a plant file.
 
-Then what effects change once: share of freewheel braking; its drop, V; wind-up of the trains, rad/(N m);
-inertia taken off the axis, kg m2. Between them the drop of the power stage's diodes, V, 0: none. Then the
-start: angle, rad, and where within a count the incremental encoders wake up, 0..1.
-"""
+
+class Numbers(NamedTuple):
+    """The declared numbers of one axis, SI units, by their names in a plant file (`PATHS`).
+
+    Then what effects change once: share of freewheel braking; its drop, V; wind-up of the trains, rad/(N m);
+    inertia taken off the axis, kg m2. Between them the drop of the power stage's diodes, V, 0: none. Then the
+    start: angle, rad, and where within a count the incremental encoders wake up, 0..1.
+    """
+
+    grid: float
+    voltage: float
+    temperature: float
+    warming: float
+    pwm_frequency: float
+    inertia: float
+    stiffness: float
+    damping: float
+    backlash: float
+    bristle_stiffness: float
+    bristle_damping: float
+    viscous: float
+    coulomb: float
+    stiction: float
+    stribeck_rate: float
+    stribeck_exponent: float
+    bristle_decay: float
+    torque_constant: float
+    resistance: float
+    inductance: float
+    rotor_inertia: float
+    drag: float
+    switch_resistance: float
+    sense_resistance: float
+    incremental: float
+    roller_ratio: float
+    absolute: float
+    auxiliary: float
+    auxiliary_ratio: float
+    tachometer: float
+    diode: float
+    diode_drop: float
+    stage_drop: float
+    compliance: float
+    swinging: float
+    angle: float
+    incremental_phase: float
+    phase_a: float
+    phase_b: float
 
 
 def grid_ns(model: PlantModel) -> int:
@@ -80,7 +116,7 @@ def declared(model: PlantModel, axis: str) -> dict[str, Number]:
     return {name: attrgetter(path.replace("axis", f"axes.{axis}", 1))(model) for name, path in PATHS.items()}
 
 
-def numbers_of(model: PlantModel, name: str, seed: int, angle: float) -> Any:
+def numbers_of(model: PlantModel, name: str, seed: int, angle: float) -> Numbers:
     """Return what the row of an axis is made of, at the start angle, rad."""
     axis: AxisModel = getattr(model.axes, name)
     return Numbers(
@@ -121,7 +157,7 @@ def _fraction(seed: int, name: str) -> float:
 
 
 @inner
-def prepare(w: Floats, n: Any) -> None:
+def prepare(w: Floats, n: Numbers) -> None:
     """Fill the parameters of one axis and its state at rest, teeth in contact; the row is zero before."""
     resistance = n.resistance + n.switch_resistance + n.sense_resistance
     w[at.GRID] = n.grid
