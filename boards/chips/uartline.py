@@ -6,6 +6,7 @@ OERR, FERR, a FIFO of four or two.
 
 from collections import deque
 from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple
 
 from bus.time import EventQueue
@@ -63,10 +64,9 @@ class UartLine:
         self._busy_ns = max(self._busy_ns, self._queue.now_ns)
         for byte in data:
             self._busy_ns += byte_ns
-            # bound now, by a default that the queue's type of a callback does not know
-            self._queue.at(self._busy_ns, lambda t_ns, byte=byte: self._through(t_ns, byte))  # type: ignore[misc]
+            self._queue.at(self._busy_ns, partial(self._through, byte))
 
-    def _through(self, t_ns: int, byte: int) -> None:
+    def _through(self, byte: int, t_ns: int) -> None:
         if self.peer is not None:
             self.peer.hear(t_ns, line_levels(byte), self.baud)
 

@@ -7,6 +7,7 @@ import socket
 import sys
 from contextlib import suppress
 from stat import S_ISSOCK
+from typing import Any
 
 import can
 
@@ -46,14 +47,14 @@ def open_bus(spec: str) -> can.BusABC:
     if interface not in can.VALID_INTERFACES:
         known = ", ".join(sorted(can.VALID_INTERFACES))
         raise SpecError(f'"{spec}": python-can has no interface "{interface}"; it has {known}')
-    settings: dict[str, str | int] = {}
+    settings: dict[str, Any] = {}  # an interface's own, which the signature of `can.Bus` cannot know
     for option in options:
         key, equals, value = option.partition("=")
         if not (key and equals):
             raise SpecError(f'"{spec}": option "{option}" is not key=value')
         settings[key] = int(value) if value.isdecimal() and len(value) < 19 else value
-    try:  # an interface's own settings: of any type, which the signature cannot know
-        bus = can.Bus(interface=interface, channel=channel, ignore_config=True, **settings)  # type: ignore[arg-type]
+    try:
+        bus = can.Bus(interface=interface, channel=channel, ignore_config=True, **settings)
     except Exception as error:  # forty interfaces, each with its own idea of what to raise for a wrong option
         reason = " ".join(str(getattr(error, "strerror", None) or error).split()) or type(error).__name__
         remedy = _remedy(error).format(channel) if interface == "socketcan" else ""
