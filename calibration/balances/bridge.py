@@ -53,7 +53,7 @@ def duties(frame: Frame, effort: Array) -> Array:
 
 @entry
 def _register(share: Array, fresh: Array) -> Array:
-    """What a register that waits for a whole step holds less what it should (n,), in steps."""
+    """The lack (n,), in steps, of a register that waits for a whole step."""
     out = np.zeros(len(share))
     held = 0.0
     for k in range(len(share)):

@@ -87,37 +87,12 @@ def _command_of(view: View, balance: Problem, law: Controller, known: Array, bef
     """
     moved = {**view.columns, "position": view.delayed(view.x, -before * view.period_s)}
     view = replace(view, columns=moved)
-    effort, x, reference = view.columns["effort"], view.x, view.columns["reference"]
-    labels, full = _terms(view, law, reference - x)
+    reference = view.columns["reference"]
+    labels, full = _terms(view, law, reference - view.x)
     sizes = np.array(list(declared_terms(law).values()))
-    late = []
-    if law.law == "cascade":
-        late = [view.second(x)]
-    elif "d" in law.gains:
-        late = [-view.second(reference - x)]
-    # the rates of position and reference hold a delay of all: it is read as a smaller gain of the rate
-    if not ("d" in law.gains or "rate_feedforward" in law.gains):
-        late.append(-view.rate(full @ sizes))
-    terms_at = view.at(np.column_stack([full, *late]))
-    unit = view.rig.columns["effort"].unit
-    nuisances, names = _per_file(view, balance, "i" in law.gains, unit)
-    ok = view.ok[view.rows]
-    if law.limit is not None:
-        ok &= view.at((np.abs(effort) > AT_LIMIT * law.limit).astype(float)) < STRAY
-    train = ok & ~balance.held
-    p = replace(
-        balance,
-        channel="S",
-        unit=unit,
-        y=view.at(effort),
-        base=nuisances,
-        base_labels=names,
-        valid=ok,
-        fresh=nuisances,
-        floor=0.0,
-        step=LEAST * float(np.std(view.at(effort)[train])) if train.any() else 0.0,
-        resolved=None,
-    )
+    terms_at = view.at(np.column_stack([full, *_late(view, law, full @ sizes)]))
+    p = _against_the_law(view, balance, law)
+    nuisances, train = p.base, p.valid & ~p.held
     z = np.hstack([known, nuisances])
     follows = z @ np.column_stack([solve(z[train], c[train]) for c in terms_at.T])
     design = np.hstack([follows, nuisances])
@@ -146,6 +121,37 @@ def _command_of(view: View, balance: Problem, law: Controller, known: Array, bef
         follows=follows[:, :k],
         forward=forward,
         rms=rms,
+    )
+
+
+def _late(view: View, law: Controller, declared: Array) -> list[Array]:
+    """Columns (n,) of lags: of a rate's own filter, and of all where no rate's gain would read it as less.
+    declared: the law's output (n,)."""
+    error = view.columns["reference"] - view.x
+    own = [view.second(view.x)] if law.law == "cascade" else [-view.second(error)] * ("d" in law.gains)
+    return own if "d" in law.gains or "rate_feedforward" in law.gains else [*own, -view.rate(declared)]
+
+
+def _against_the_law(view: View, balance: Problem, law: Controller) -> Problem:
+    """The effort on the rows of `balance` that are not at the law's limit, beside what is each file's own."""
+    effort, unit = view.columns["effort"], view.rig.columns["effort"].unit
+    nuisances, names = _per_file(view, balance, "i" in law.gains, unit)
+    ok, y = view.ok[view.rows], view.at(effort)
+    if law.limit is not None:
+        ok &= view.at((np.abs(effort) > AT_LIMIT * law.limit).astype(float)) < STRAY
+    train = ok & ~balance.held
+    return replace(
+        balance,
+        channel="S",
+        unit=unit,
+        y=y,
+        base=nuisances,
+        base_labels=names,
+        valid=ok,
+        fresh=nuisances,
+        floor=0.0,
+        step=LEAST * float(np.std(y[train])) if train.any() else 0.0,
+        resolved=None,
     )
 
 
