@@ -36,6 +36,7 @@ NOISE = 0.01  # of the acceleration's rms, that the position's noise may leave i
 # the same where the filter leaves few rows: an inertia is then off by its square, a thousandth. ASSUMPTION
 NOISE_OF_FEW = 0.03
 FEW = 600  # rows behind the filter, that are few: half of them stands still or is held out. ASSUMPTION
+LEAST_WIDTH = 0.5  # rows, of the speed's smoothing: a central difference is as wide. arithmetic
 LEAST = 2.0  # rows: standard deviation of the filter at least, where the rig file does not say it. ASSUMPTION
 MOST = 40.0  # rows likewise at most. ASSUMPTION
 NYQUIST = 0.5  # cycles per row. by arithmetic
@@ -285,9 +286,12 @@ def _motion(view: View, sigma: float) -> None:
     view.direction = direction_of(soft, view.file, least_travel(soft))
     view.since = since_reversal(soft, view.direction, view.file)
     if view.dynamic:  # a driven axis also stands still: there its friction has no direction
+        unsure = SURE_Z * view.noise / view.period_s / np.sqrt(4 * np.sqrt(np.pi))  # smoothed over a row
+        view.slow = max(unsure / width**1.5, SLOWEST * view.top)
+        # a reversal between two accelerations moves with the smoothing: no more than the noise asks for
+        width = min(width, max((unsure / (view.slow or 1.0)) ** (2 / 3), LEAST_WIDTH))
+        view.speed = smooth(view.rate(view.x), view.segment, width)
         fade(view, STANDSTILLS[3])
-        noise = view.noise / view.period_s / np.sqrt(4 * np.sqrt(np.pi) * width**3)
-        view.slow = max(SURE_Z * noise, SLOWEST * view.top)
 
 
 def fade(view: View, part: float) -> None:
