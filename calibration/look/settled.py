@@ -25,9 +25,6 @@ BOTH_WAYS = 0.2
 LITTLE = 0.05  # of the effort's variation, for friction that is none. ASSUMPTION
 # amplitude behind a filter, below which a wave is not seen there. ASSUMPTION: as little as half is still seen
 HARDLY = 0.5
-# of the waves of a response, that the drive's own acceleration may make of them. ASSUMPTION: a tenth of an
-# amplitude, half of what hardware.md 2.3 leaves a gain
-FOLLOWED = 0.1
 
 
 def one_filter(view: View, made: Callable[[], Problem]) -> None:
@@ -42,9 +39,10 @@ def one_filter(view: View, made: Callable[[], Problem]) -> None:
 
 
 def _quick_waves_show(view: View, p: Problem) -> bool:
-    """Whether waves that the wider filter would take away explain rows that they were not fitted to.
+    """Whether waves that the wider filter takes away explain rows that they were not fitted to.
 
-    Waves that the drive follows need the wider one: its acceleration lacks them behind the narrow one.
+    Of slower rows it leaves them. The drive follows such waves, and its acceleration lacks them behind the
+    narrow one.
     """
     wide, top = Filter(view.rates), view.top * view.period_s
     quick = [
@@ -56,20 +54,14 @@ def _quick_waves_show(view: View, p: Problem) -> bool:
     ]
     if not quick:
         return False
-    turns = view.x[view.rows]
-    shared = view.rig.runs.get("origin") == "shared"
-    session = np.zeros_like(p.session) if shared else p.session
+    session = np.zeros_like(view.file) if view.rig.runs.get("origin") == "shared" else view.file
+    waved = np.hstack([sine_columns(view.x * k, session) for k in quick])
     second = view.second(view.x)  # what the wider filter takes off the acceleration is no wave
-    lacks = view.at(second - view.smoothed(second))
-    waved = np.hstack([sine_columns(turns * k, session) for k in quick])
-    known = np.column_stack([p.base, lacks])
-    both, rows = np.hstack([known, waved]), p.train
-    sizes = solve(both[rows], p.y[rows])
-    mass = (view.rig.constants | p.by_name(sizes)).get("inertia", 0.0)
-    followed = mass * (waved @ solve(waved[rows], lacks[rows]))
-    if np.std(followed[rows]) > FOLLOWED * np.std((waved @ sizes[-waved.shape[1] :])[rows]):
-        return False
-    return cross_validate(p, known, both, p.fit(known).whitener).sure
+    known = np.column_stack([p.base, view.at(second - view.smoothed(second))])
+    both = np.hstack([known, waved[view.rows]])
+    own = waved @ solve(both[p.train], p.y[p.train])[known.shape[1] :]
+    kept = np.std(wide(own, view.segment)[view.ok]) > HARDLY * np.std(own[view.ok])
+    return not kept and cross_validate(p, known, both, p.fit(known).whitener).sure
 
 
 def sharpest(view: View, made: Make, known: Timed | None = None) -> float:
