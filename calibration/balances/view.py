@@ -69,6 +69,7 @@ class View:
     rates: float = 0.0  # standard deviation, rows, by which rates and accelerations are smoothed
     quanta: dict[str, float] = field(default_factory=dict)  # steps of the columns, as they were logged
     seldom: dict[str, int] = field(default_factory=dict)  # rows per reading of what is read less often
+    in_order: bool = False  # several files whose clock nobody declared: `clock` is their order's
     slow: float = 0.0  # speed below which a driven axis may stand: its friction is then not known
     slow_offset: int | None = None  # cosines per file by which the response's offset wanders; 0: a constant
     standstill: float = 0.0  # speed, position units per s, below which the direction fades
@@ -185,6 +186,7 @@ def view_of(records: list[Run], rig: Rig, response: Response) -> View:
         rates=sigma if dynamic else 0.0,
         turn=rig.turn or units_per_turn(rig.columns["position"].unit),
         quanta=quanta,
+        in_order=len(records) > 1 and any(r.in_order for r in records),
         seldom={k: round(share) for k in columns if (share := rows_per_reading(records, k)) > SELDOM},
     )
     _motion(view, sigma)

@@ -47,7 +47,8 @@ def controls(
             back = c.columns[::-1].copy()
             what = f"time reversed ({c.say()})"
             same = Wrong(what=what, note="no test here: this motion reads the same backwards")
-            tests.insert(0, same if _alike(c.columns, back) else Wrong(what=what, columns=back))
+            known = np.hstack([s.problem.base, c.columns])
+            tests.insert(0, same if _alike(known, back) else Wrong(what=what, columns=back))
         for x in tests:
             accepted = x.columns is not None and _better(s, k, replace(c, columns=x.columns, shape=None))
             note = {"note": x.note} if x.note else {}
@@ -95,7 +96,7 @@ def order_beside(s: Selection, scene: Scene) -> Callable[[int, Candidate], list[
 
 
 def _alike(a: Array, b: Array) -> bool:
-    """True when b's columns lie mostly in the span of a's: the control is then the effect itself."""
+    """True when b's columns lie mostly in the span of a's: the control is then what is known already."""
     q, _ = np.linalg.qr(a)
     return bool(np.sum((q.T @ b) ** 2) > REVERSIBLE * np.sum(b**2))
 

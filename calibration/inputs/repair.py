@@ -21,7 +21,7 @@ def repair(run: Run, rig: Rig) -> None:
     for channel, where in rig.columns.items():
         if channel == "time":
             continue
-        if where.wrap is None:
+        if where.wrap is None and channel not in SLOW:
             _wraps(run, channel, where)
         if channel == "position":
             _leaps(run, channel)

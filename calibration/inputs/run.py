@@ -44,7 +44,7 @@ class Run:
     the supply, `current_a/b` A, `supply` V. Also `temperature` degree C. `columns` of a table hold the rig's
     units. `raw` keeps the columns as logged. `logged`: those that were put on another clock, before, in rig
     units: their steps are the sensor's. `start_s` is where `t` is 0 on the clock that all files share, of any
-    epoch; None: not known.
+    epoch; None: not known. `in_order`: only the order of the files makes it so.
     """
 
     name: str
@@ -58,6 +58,7 @@ class Run:
     signals: dict[str, Signal] = field(default_factory=dict)
     period_s: float = 0.0
     start_s: float | None = None
+    in_order: bool = False
     repairs: list[Repair] = field(default_factory=list)
     logged: dict[str, Array] = field(default_factory=dict)
 

@@ -162,7 +162,7 @@ def set_starts(runs: list[Run], rig: Rig) -> str:
         return "the files' own clock"
     at = 0.0
     for r in runs:
-        r.start_s = at
+        r.start_s, r.in_order = at, not rig.wall_time
         at += r.duration_s + r.period_s + float(rig.wall_time.get("gap_s", 0.0))
     return "the order of the files, end to end"
 

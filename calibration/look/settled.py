@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from calibration.balances.balance import response_of
+from calibration.balances.balance import TOLD_BY, response_of
 from calibration.balances.candidate import sine_columns, waves
 from calibration.balances.filters import Filter
 from calibration.balances.problem import Problem
@@ -106,7 +106,8 @@ def doubts(view: View, told: Balance) -> list[str]:
     there, back = sorted((int(np.sum(way > 0)), int(np.sum(way < 0))))
     one_sign = y is not None and there > BOTH_WAYS * back and np.ptp(np.sign(y[view.ok])) == 0
     brakes = s.problem.named(s.after).get("coulomb")
-    if one_sign and brakes is not None and brakes.value <= LITTLE * float(np.std(s.problem.y)):
+    pulled = any(n.startswith(TOLD_BY) for n, _ in s.problem.base_labels)
+    if one_sign and not pulled and brakes is not None and brakes.value <= LITTLE * float(np.std(s.problem.y)):
         out.append(f"{channel} never changes its sign, though the drive goes both ways: is it a size?")
     return out
 

@@ -120,9 +120,12 @@ class Scene:
 
     @property
     def clocks(self) -> dict[str, Array]:
-        """Times (n,) s that an effect may begin by, by its start's name: all files' clock, each file's."""
+        """Times (n,) s that an effect may begin by, by its start's name: all files' clock, each file's.
+
+        Files without a declared clock may have been given in any order: a time among them is none.
+        """
         v = self.view
-        shared = {"start": v.clock - v.clock.min()}
+        shared = {} if v.in_order else {"start": v.clock - v.clock.min()}
         return shared | ({"start_in_run": since_first(v.t, v.file)} if len(np.unique(v.file)) > 1 else {})
 
     @cached_property
