@@ -4,7 +4,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.balances.recursions import stop_operator
-from calibration.names.gravity_imbalance import LEAST_TURN
 from calibration.names.gravity_imbalance import NAME as WEIGHT
 from calibration.names.inplant import Facts, Made, value
 from calibration.names.name import Array, Beside, Candidate, Finding, Name, Scene, both_ways, candidate, grid
@@ -36,8 +35,8 @@ def columns(s: Scene) -> list[Candidate]:
     twins = () if alone else (WEIGHT.name,)
     along = ("width", travels, s.angle_unit)
     looped = grid(NAME.name, s.shaped(full), *sizes, along=along, positive=(0, 1), twins=twins)
-    # a bundle that hangs freely has hardly a loop; beside no declared weight, a longer slope is a weight's
-    if s.pair is None and (weighed or s.span < LEAST_TURN * turn):
+    # a bundle that hangs freely has hardly a loop; of a weight it has the twin (decide/twins.py)
+    if s.pair is None:
         looped.append(candidate(NAME.name, s.at(spring), sizes[0], positive=(0,), twins=twins))
     return looped
 
