@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.calibration.test_drives import COULOMB, FORCE, MASS, PERIOD, VISCOUS, answer
+from tests.calibration.test_drives import COULOMB, FORCE, MASS, PERIOD, VISCOUS, answer, motion
 
 LOADED = FORCE.replace("effort:", "applied: {column: f, unit: N}\n  effort:").replace(
     "offset]", "offset, applied]"
@@ -45,3 +45,27 @@ def test_what_is_held_out_is_told(tmp_path: Path, reverse: bool) -> None:
     begin = float(told.split("from ")[1].split()[0])
     assert (" to " in told) is not reverse
     assert begin == pytest.approx(36.0, abs=1.0) if reverse else begin < 24.0
+
+
+def test_what_is_applied_is_a_load_without_accelerations(tmp_path: Path) -> None:
+    """A cylinder under pressure: its friction grows with it, in a rig file that declares no mass."""
+    t, x, f, _ = loaded([1.0, 5.0, 3.0, 9.0, 7.0, 2.0])
+    v = np.gradient(x, t)
+    u = -f + VISCOUS * v + (COULOMB + PART * f) * np.sign(v)
+    u += 0.02 * np.random.default_rng(1).standard_normal(len(t))
+    data = answer(tmp_path, LOADED.replace("inertia, ", ""), (t, x, f, u), header="t,x,f,u")
+    assert [e["name"] for e in data["effects"]] == ["load_friction"]
+    assert data["effects"][0]["parameters"]["coefficient"]["value"] == pytest.approx(PART, rel=0.05)
+
+
+@pytest.mark.parametrize("clock", [False, True])
+def test_files_without_a_clock_have_no_time_among_them(tmp_path: Path, clock: bool) -> None:
+    """Friction is another one from the third file on: a start among them only where somebody says when."""
+    tables = []
+    for more in (0.0, 0.0, 0.8, 0.8, 0.8):
+        t, x, u = motion()
+        tables.append((t, x, u + more * np.sign(np.gradient(x, t))))
+    text = FORCE + ("wall_time: {from: order}\n" if clock else "")
+    data = answer(tmp_path, text, *tables)
+    starts = [p for e in data["effects"] for p in e["parameters"] if p == "start"]
+    assert bool(starts) == clock

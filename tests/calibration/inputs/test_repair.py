@@ -141,3 +141,17 @@ def test_a_word_with_a_sign_is_read_so_wherever_the_run_begins(tmp_path: Path, b
     repair(r, rig(tmp_path))
     assert [x.kind for x in r.repairs] == ["signed"]
     assert np.array_equal(r.columns["effort"], counts)
+
+
+def test_a_supply_that_breaks_down_is_no_counter(tmp_path: Path) -> None:
+    """36 V fall to 13 V and come back by steps of 22 and 23 V: no length of a circle that a supply has."""
+    r = made(1)
+    volts = np.full(ROWS, 36.0) + 0.02 * np.random.default_rng(2).standard_normal(ROWS)
+    volts[1000:1400] -= 22.6
+    r.columns["supply"] = volts.copy()
+    r.signals["supply"] = signal_of("supply", "supply", "V", volts, 0)
+    path = tmp_path / "rig.yaml"
+    path.write_text(RIG.replace("response:", "  supply: {column: s, unit: V}\nresponse:"), encoding="utf-8")
+    repair(r, load_rig(path))
+    assert np.array_equal(r.columns["supply"], volts)
+    assert not r.repairs

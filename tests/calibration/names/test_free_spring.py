@@ -1,0 +1,27 @@
+"""A spring without a loop over an angle, and a weight there: each stands for the other, and leaves less itself."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.calibration.test_drives import FORCE, answer, motion
+
+ARM = FORCE.replace("unit: m}", "unit: rad}").replace("unit: N}", "unit: N m}")
+WIDER = 3.0  # times the motion's 0.3 and 0.1: some two radians from end to end
+STIFFNESS, WEIGHT = 2.0, 5.0  # N m/rad, N m
+
+
+@pytest.mark.parametrize("spring", [True, False])
+def test_what_pulls_back_over_two_radians_is_told_from_a_weight(tmp_path: Path, spring: bool) -> None:
+    t, x, u = motion()
+    x, u = WIDER * x, WIDER * u
+    u += STIFFNESS * x if spring else WEIGHT * np.sin(x)
+    (first, *more) = answer(tmp_path, ARM, (t, x, u))["effects"]
+    assert not more
+    if spring:
+        assert first["name"] == "cable_wrap"
+        assert first["parameters"]["stiffness"]["value"] == pytest.approx(STIFFNESS, rel=0.05)
+    else:
+        assert first["name"] == "gravity_imbalance"
+        assert first["parameters"]["amplitude"]["value"] == pytest.approx(WEIGHT, rel=0.05)
