@@ -13,6 +13,7 @@ from calibration.inputs.rigfile import load_rig
 from calibration.look.looked import Looked, Options
 
 INERTIA, VISCOUS, COULOMB, CONSTANT, OHM = 0.002, 0.001, 0.05, 0.05, 1.0  # SI, of the motor below
+LOOP = 2.0  # A s/rad, of its speed
 TURNS = 0.05  # rad/s, over which its friction turns
 PERIOD_S, ROWS, STEPS = 0.01, 6000, 20
 COUNTS = 4096  # per turn
@@ -29,15 +30,15 @@ stages:
 """
 
 
-def looked(folder: Path, cogging: float) -> Looked:
-    """The finder on a minute of volts in steps of either sign, with three cogs a turn."""
+def looked(folder: Path, cogging: float, cogs: int = 3, steady: float = 0.0) -> Looked:
+    """The finder on a minute of volts in steps of either sign; or of a loop that holds a `steady` rad/s."""
     rng = np.random.default_rng(5)
     volts = np.repeat(rng.choice([-1, 1], 80) * rng.uniform(1.2, 2.2, 80), rng.integers(100, 400, 80))[:ROWS]
     rows, speed, angle, h = [], 0.0, 0.0, PERIOD_S / STEPS
     for k, u in enumerate(volts.tolist()):
         for _ in range(STEPS):
-            current = (u - CONSTANT * speed) / OHM
-            torque = CONSTANT * current - VISCOUS * speed - cogging * sin(3 * angle)
+            current = LOOP * (steady - speed) if steady else (u - CONSTANT * speed) / OHM
+            torque = CONSTANT * current - VISCOUS * speed - cogging * sin(cogs * angle)
             speed += h * (torque - COULOMB * tanh(speed / TURNS)) / INERTIA
             angle += h * speed
         rows.append(
@@ -66,3 +67,9 @@ def test_cogging_that_the_rotor_follows_has_its_size(tmp_path: Path) -> None:
     cog: Finding = found.effects[0]
     assert (cog.name, cog.harmonic) == ("motor_cogging", 3)
     assert cog.parameters["amplitude"].value == pytest.approx(0.02, rel=0.1)
+
+
+def test_cogging_at_one_speed_is_not_filtered_away(tmp_path: Path) -> None:
+    """Six hertz, of which the filter that the position asks for leaves none: the current shows them."""
+    found = looked(tmp_path, cogging=0.02, cogs=2, steady=20.0)
+    assert (found.effects[0].name, found.effects[0].harmonic) == ("motor_cogging", 2)

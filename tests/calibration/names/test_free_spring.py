@@ -1,4 +1,4 @@
-"""A spring without a loop over an angle, and a weight there: each stands for the other, and leaves less itself."""
+"""A spring without a loop over an angle, and a weight there: each is told from the other."""
 
 from pathlib import Path
 
