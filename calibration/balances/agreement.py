@@ -39,6 +39,7 @@ class Agreement:
     late: bool
     scale: float = 1.0
     scale_error: float = 0.0
+    size: float = 0.0  # rms of the position's rate
 
     @property
     def scaled(self) -> str:
@@ -52,6 +53,11 @@ class Agreement:
         """Floors that remain between the two columns; 0 where there is none."""
         rest = self.after if self.late else self.before
         return rest / self.floor if np.isfinite(rest) and np.isfinite(self.floor) and self.floor > 0 else 0.0
+
+    @property
+    def hardly(self) -> bool:
+        """Whether what remains is so small a part of the rate that its smoothing may make it."""
+        return (self.after if self.late else self.before) < SCALED * self.size
 
 
 def velocity_against_position(view: View, held: Mask) -> Agreement | None:
@@ -96,7 +102,7 @@ def velocity_against_position(view: View, held: Mask) -> Agreement | None:
     own, spread = float(last.beta[0]), float(last.errors[0])
     if abs(_of_the_travel(view) - 1.0) < SCALED:  # rows that repeat spoil the rates, not the way
         own = 1.0
-    return Agreement("velocity", unit, delay, error, b, c, floor, late, own, spread)
+    return Agreement("velocity", unit, delay, error, b, c, floor, late, own, spread, rms(v[rows][test]))
 
 
 def _of_the_travel(view: View) -> float:

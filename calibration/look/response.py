@@ -64,7 +64,7 @@ def look_at_response(drive: Drive, rig: Rig, options: Options) -> Looked:
     effects += electric.findings if electric is not None else []
     effects.sort(key=lambda f: (f.of_column, f.name == UNKNOWN and not f.equivalent, -f.share))
     strange, a = [], agreement
-    if a is not None and a.left > STILL_MISSING:
+    if a is not None and a.left > STILL_MISSING and not a.hardly:
         strange = [
             f"{a.channel} is not the position's rate ({a.left:.1f} floors apart): find out how it is made"
         ]

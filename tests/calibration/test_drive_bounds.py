@@ -1,6 +1,7 @@
 """What a drive's answer may not say: sizes of a sign that physics excludes, files apart by whole counters, a
 floor below what is made again; and what it says of a rate or a delay that it cannot name."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -122,6 +123,10 @@ def test_a_sound_rate_agrees_with_the_position_whatever_shakes_it(tmp_path: Path
     found = velocity_against_position(view, np.arange(len(view.rows)) > 0.7 * len(view.rows))
     assert found is not None and not found.late
     assert 0.5 < found.left < 1.5
+    assert found.hardly
+    apart = replace(view, columns={**view.columns, "velocity": rate + 0.05 * np.sin(t)})
+    seen = velocity_against_position(apart, np.arange(len(view.rows)) > 0.7 * len(view.rows))
+    assert seen is not None and not seen.hardly
 
 
 def test_strokes_that_are_made_again_are_the_floor_of_a_friction_test(tmp_path: Path) -> None:
