@@ -24,29 +24,29 @@ class Memory:
 
     def __init__(self) -> None:
         self._words = words()
-        self.area = _OPERATING_START
+        self.power_up()
 
-    def power_up(self, alarms: int) -> None:
-        """Status as after switching on; parameters stay."""
+    def power_up(self) -> None:
+        """Status as after switching on, with the usual alarm; parameters stay."""
         self.area = _OPERATING_START
-        self._words[_STATUS, ALARM_WORD] = alarms
+        self._words[_STATUS, ALARM_WORD] = int(Alarm.UNDER_VOLTAGE)
         self._words[_STATUS, WARNING_WORD] = 0
         self._words[_STATUS, RECOVERY_WORD] = 0
 
     @property
     def alarms(self) -> int:
         """Alarm word."""
-        return self._words.get((_STATUS, ALARM_WORD), 0)
+        return self._words[_STATUS, ALARM_WORD]
 
     @property
     def warnings(self) -> int:
         """Warning word."""
-        return self._words.get((_STATUS, WARNING_WORD), 0)
+        return self._words[_STATUS, WARNING_WORD]
 
     @property
     def short_recovery(self) -> bool:
         """Whether the short t_m is selected."""
-        return self._words.get((_STATUS, RECOVERY_WORD), 0) & 3 == 1
+        return self._words[_STATUS, RECOVERY_WORD] & 3 == 1
 
     def raise_alarm(self, bits: int) -> None:
         """The encoder finds something wrong."""
@@ -101,11 +101,15 @@ class Answers:
         self.temperature = 2932
         self.test_values = 0
         self.silent_until_ns = 0
-        self.busy_until_ns = 0
+        self._forget()
+
+    def _forget(self) -> None:
+        """Additional information off, nothing read, nothing under way."""
         self._info_1: int | None = None
         self._info_2: int | None = None
         self._parameter = (0, 0)
         self._test_port = 0
+        self.busy_until_ns = 0
 
     def bits(self, t_ns: int, code: int, mode: Mode, position: int, argument: int) -> list[int]:
         """Bits after the start bit, CRCs and additional information included."""
@@ -140,10 +144,9 @@ class Answers:
         """16 bits of what `info` selects; 0 for what this encoder has not got."""
         address, value = self._parameter
         wrapped = position & (1 << POSITION_BITS) - 1
-        return {
+        contents: dict[int, int] = {
             Info.POSITION2_LOW: wrapped & 0xFFFF,
-            Info.POSITION2_MIDDLE: wrapped >> 16 & 0xFFFF,
-            Info.POSITION2_HIGH: wrapped >> 32,
+            Info.POSITION2_MIDDLE: wrapped >> 16,
             Info.MEMORY_LSB: address << 8 | value & 0xFF,
             Info.MEMORY_MSB: address << 8 | value >> 8,
             Info.MRS_ACKNOWLEDGE: self.memory.area,
@@ -153,7 +156,8 @@ class Answers:
             Info.TEST_HIGH: self.test_values >> 32,
             Info.TEMPERATURE_1: self.temperature,
             Info.ERROR_SOURCE: self.memory.alarms,
-        }.get(Info(info) if info in tuple(Info) else Info.NOP_1, 0)
+        }
+        return contents.get(info, 0)
 
     def _act(self, t_ns: int, code: int, head: int, data: int) -> int:
         """Do what a command with an argument says; the 24 bits it answers with."""
@@ -196,11 +200,7 @@ class Answers:
             self.memory.area = mrs
 
     def power_up(self, t_ns: int) -> None:
-        """Reset command or supply: additional information off, the usual alarm, silence for 50 ms after the
-        answer."""
-        self._info_1 = self._info_2 = None
-        self._parameter = (0, 0)
-        self._test_port = 0
-        self.busy_until_ns = 0
-        self.memory.power_up(int(Alarm.UNDER_VOLTAGE))
+        """Reset command or supply: all forgotten but parameters, silence for 50 ms after the answer."""
+        self._forget()
+        self.memory.power_up()
         self.silent_until_ns = t_ns + at.ACCESS_NS + at.RESET_NS

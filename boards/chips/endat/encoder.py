@@ -1,7 +1,7 @@
 """The encoder's end of the line, clock edge by clock edge (hardware.md 3.1)."""
 
 from collections.abc import Callable
-from enum import IntEnum
+from enum import Enum, auto
 
 from boards.chips.endat import registers as at
 from boards.chips.endat.answer import Answers, value_of
@@ -9,15 +9,15 @@ from boards.chips.endat.registers import MODES, Mode, Reply
 from boards.silicon.endat import CALCULATION_NS, RECOVERY_NS
 
 
-class Phase(IntEnum):
+class Phase(Enum):
     """Where a transfer is."""
 
-    IDLE = 0
-    COMMAND = 1
-    WAIT = 2
-    SEND = 3
-    SUPPLEMENT = 4
-    DONE = 5
+    IDLE = auto()
+    COMMAND = auto()
+    WAIT = auto()
+    SEND = auto()
+    SUPPLEMENT = auto()
+    DONE = auto()
 
 
 class ClockedEncoder:
@@ -32,16 +32,13 @@ class ClockedEncoder:
     def __init__(self, pin: Callable[[int], int]) -> None:
         self.pin = pin
         self.answers = Answers()
-        self.output: int | None = 0
+        self.output: int | None = None
         self._clock = 1
-        self._edge_ns = -(1 << 60)
-        self._phase = Phase.IDLE
+        self._phase = self._after = Phase.IDLE
         self._mode: Mode | None = None
         self._in: list[int] = []
         self._bits: list[int] = []
-        self._count = self._sent = 0
-        self._latched = 0
-        self._ready_ns = -(1 << 60)
+        self._edge_ns = self._ready_ns = self._count = self._sent = self._latched = 0
 
     @property
     def phase(self) -> Phase:
@@ -49,8 +46,10 @@ class ClockedEncoder:
         return self._phase
 
     def level(self, t_ns: int) -> int:
-        """The data line as the encoder leaves it at `t_ns`: after a transfer LOW once t_m is over."""
-        if self._phase is Phase.DONE and t_ns - self._edge_ns >= self.recovery_ns:
+        """The data line at `t_ns`: LOW at rest, which a transfer ends in once t_m is over. HIGH where the
+        encoder lets go of it (ASSUMPTION: the receiver's bias)."""
+        over = self._phase is Phase.DONE and t_ns - self._edge_ns >= self.recovery_ns
+        if over or self._phase is Phase.IDLE:
             return 0
         return 1 if self.output is None else self.output
 
@@ -71,13 +70,13 @@ class ClockedEncoder:
         self._edge_ns = t_ns
         if clock:
             if held_ns > at.LOW_RESETS_NS:
-                self._phase, self.output = Phase.IDLE, 0
+                self._phase = Phase.IDLE
             elif self._phase is not Phase.IDLE:
                 self._rise(t_ns, data)
             return
         over = self._phase is Phase.DONE and held_ns >= self.recovery_ns
         if over or (self._phase not in (Phase.IDLE, Phase.DONE) and held_ns > at.HIGH_RESETS_NS):
-            self._phase, self.output = Phase.IDLE, 0
+            self._phase = Phase.IDLE
         if self._phase is Phase.IDLE and t_ns >= self.answers.silent_until_ns:
             self._begin(t_ns)
 
@@ -123,6 +122,7 @@ class ClockedEncoder:
         code = value_of(self._in[: at.MODE_BITS])
         argument = self._in[at.MODE_BITS :]
         self._bits = self.answers.bits(t_ns, code, mode, self._latched, value_of(argument))
+        self._after = Phase.SUPPLEMENT if mode.supplement else Phase.DONE
         busy = mode.reply is Reply.PARAMETER
         self._ready_ns = t_ns + (at.ACCESS_NS if busy else CALCULATION_NS)
 
@@ -130,9 +130,7 @@ class ClockedEncoder:
         self.output = self._bits[self._sent]
         self._sent += 1
         if self._sent == len(self._bits):
-            more = self._mode is not None and self._mode.supplement
-            self._phase = Phase.SUPPLEMENT if more else Phase.DONE
-            self._in = self._in[: at.MODE_BITS]
+            self._phase = self._after
 
     def _supplement(self, t_ns: int, data: int) -> None:
         """The master's turn: a start bit, 8 and 16 bits."""
@@ -143,4 +141,4 @@ class ClockedEncoder:
         if len(self._in) == at.MODE_BITS + 1 + at.ARGUMENT_BITS:
             code = value_of(self._in[: at.MODE_BITS])
             self.answers.supplement(t_ns, code, value_of(self._in[at.MODE_BITS + 1 :]))
-            self._phase, self.output = Phase.DONE, 0
+            self._phase = Phase.DONE

@@ -60,7 +60,7 @@ class ClockedMaster:
         return next((level for at_ns, level in reversed(self._levels) if at_ns <= t_ns - self._delay_ns), 0)
 
     def exchange(
-        self, t_ns: int, code: int, argument: int | None = None, count: int = 0, supplement: int | None = None
+        self, t_ns: int, code: int, argument: int | None, count: int, supplement: int | None = None
     ) -> list[int]:
         """One transfer whose first edge is at `t_ns`: `count` bits after the start bit.
 
@@ -74,7 +74,7 @@ class ClockedMaster:
         for bit in (*[0] * at.DUMMY_CLOCKS, *out, *[0] * at.TURN_CLOCKS):
             self._clock(bit)
         limit_ns = self._t_ns + START_TIMEOUT_NS
-        while not self._clock():
+        while self._clock() != 1:
             if self._t_ns > limit_ns:
                 raise EndatError(f"EnDat command {code:06b}: no start bit within {START_TIMEOUT_NS} ns")
         bits = [self._clock() for _ in range(count - 1)]

@@ -1,18 +1,18 @@
 """EnDat: mode commands, memory areas, additional information, alarms, times as tables (hardware.md 3.1)."""
 
-from enum import IntEnum, IntFlag
+from enum import Enum, IntEnum, IntFlag, auto
 from typing import NamedTuple
 
 from boards.silicon.endat import POSITION_BITS
 
 
-class Reply(IntEnum):
+class Reply(Enum):
     """What the encoder answers with."""
 
-    POSITION = 0
-    POSITION_22 = 1
-    PARAMETER = 2
-    TEST = 3
+    POSITION = auto()
+    POSITION_22 = auto()
+    PARAMETER = auto()
+    TEST = auto()
 
 
 class Mode(NamedTuple):
@@ -88,7 +88,6 @@ class Info(IntEnum):
     NOP_1 = 0x40
     POSITION2_LOW = 0x42
     POSITION2_MIDDLE = 0x43
-    POSITION2_HIGH = 0x44
     MEMORY_LSB = 0x45
     MEMORY_MSB = 0x46
     MRS_ACKNOWLEDGE = 0x47
@@ -120,18 +119,14 @@ SHORT_RECOVERY_NS = 2_500
 
 
 def words() -> dict[tuple[int, int], int]:
-    """Memory as delivered: (area, word) -> 16 bits. Words not named are 0. A rotary single-turn encoder.
+    """Memory as delivered: (area, word) -> 16 bits. Words not named are 0, as identity and serial number.
 
-    Identity and serial number are made up (ASSUMPTION).
+    A rotary single-turn encoder.
     """
     return {
         (Area.MANUFACTURER_0, 13): POSITION_BITS,
         (Area.MANUFACTURER_0, 14): 0x8000,
-        (Area.MANUFACTURER_1, 1): 0,
         (Area.MANUFACTURER_1, 4): (1 << POSITION_BITS) & 0xFFFF,
         (Area.MANUFACTURER_1, 5): (1 << POSITION_BITS) >> 16,
-        (Area.MANUFACTURER_1, 8): 0x0829,
-        (Area.MANUFACTURER_1, 11): 0x0001,
         (Area.MANUFACTURER_2, 5): 0x0001,
-        (Area.STATUS, ALARM_WORD): int(Alarm.UNDER_VOLTAGE),
     }

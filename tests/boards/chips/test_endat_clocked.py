@@ -8,12 +8,14 @@ from hypothesis import strategies as st
 
 from boards.chips.endat import ClockedEncoder, ClockedMaster, EndatError
 from boards.chips.endat import registers as at
-from boards.chips.endat.answer import crc_bits
+from boards.chips.endat.answer import Answers, crc_bits
 from boards.chips.endat.encoder import Phase
 from boards.chips.endat.registers import Alarm, Info
 from boards.silicon.endat import EndatEncoder, EndatMaster, check
 
 MS = 1_000_000
+SLOW_HZ = 100_000
+"""The slowest clock of hardware.md 3.1: the 12 ms of a memory access are fewest edges."""
 positions = st.integers(0, (1 << 29) - 1)
 
 
@@ -90,14 +92,14 @@ MODES = {code: (code in ARGUMENTS, code in SUPPLEMENTS) for code in ARGUMENTS | 
 
 @pytest.mark.parametrize("code", range(64))
 def test_only_commands_that_exist_are_answered(code: int) -> None:
-    line = Line(5)
+    line = Line(5, clock_hz=SLOW_HZ)
     if code in MODES:
         argument, supplement = MODES[code]
         bits = line.master.exchange(0, code, 0 if argument else None, 29, 0 if supplement else None)
         assert len(bits) == 29
         assert (at.MODES[code].argument, at.MODES[code].supplement) == (bool(argument), bool(supplement))
         return
-    with pytest.raises(EndatError, match="no start bit"):
+    with pytest.raises(EndatError, match="no start bit within 24000000 ns"):  # twice t_ac
         line.master.exchange(0, code, None, 36)
     assert line.encoder.level(line.master.t_ns + 1) == 0
     assert line.master.position(line.next_ns).value == 5
@@ -130,7 +132,7 @@ def test_error_bits_that_agree_are_an_alarm(flags: tuple[int, int], alarm: bool)
 
 
 def test_memory_identifies_the_encoder() -> None:
-    line = Line()
+    line = Line(clock_hz=SLOW_HZ)
     master = line.master
 
     def read(area: int, word: int) -> int:
@@ -150,7 +152,7 @@ def test_memory_identifies_the_encoder() -> None:
 
 
 def test_what_may_be_written() -> None:
-    line = Line()
+    line = Line(clock_hz=SLOW_HZ)
     master = line.master
     for area, kept in ((0xA7, True), (0xA9, True), (0xAB, True), (0xAD, True), (0xBF, True), (0xA1, False),
                        (0xA3, False), (0xA5, False), (0xBD, False)):  # fmt: skip
@@ -163,7 +165,7 @@ def test_what_may_be_written() -> None:
 
 
 def test_alarms_and_warnings_are_cleared_whole_by_writing_0() -> None:
-    line = Line()
+    line = Line(clock_hz=SLOW_HZ)
     memory = line.encoder.answers.memory
     memory.raise_alarm(Alarm.LIGHT | Alarm.POSITION)
     memory.raise_alarm(Alarm.AMPLITUDE)
@@ -204,7 +206,14 @@ def test_additional_information_2_comes_before_1_and_one_transfer_later() -> Non
     assert line.master.position(line.next_ns, infos=1).infos == ((0x19 | 0x40) << 16,)
     select(line, 0x5F)
     bits = line.master.exchange(line.next_ns, at.SEND_POSITION_INFO, None, 60)
-    assert bits[36:] == [bits[36]] * 24  # nothing follows
+    assert bits[36:] == [bits[35]] * 24  # nothing follows: the last bit stays while clocks do
+
+
+def test_an_additional_information_begins_with_a_start_bit() -> None:
+    line = Line(0)
+    select(line, 0x42)
+    bits = line.master.exchange(line.next_ns, at.SEND_POSITION_INFO, None, 66)
+    assert bits[36:61] == [1, *map(int, f"{0x40 | 0x02:08b}"), *[0] * 16]
 
 
 @pytest.mark.parametrize(
@@ -215,7 +224,7 @@ def test_additional_information_2_comes_before_1_and_one_transfer_later() -> Non
     ],
 )  # fmt: skip
 def test_contents(info: int, word: int) -> None:
-    line = Line(0x12345678)
+    line = Line(0x12345678 - (1 << 29), clock_hz=SLOW_HZ)  # what a position wraps to
     line.encoder.answers.test_values = 0x5566778899
     line.encoder.answers.memory.raise_alarm(Alarm.BATTERY)
     line.master.parameter(line.next_ns, at.RECEIVE_TEST, 0x33)
@@ -235,7 +244,16 @@ def test_status_byte_warns_and_is_busy() -> None:
     (told,) = line.master.position(line.next_ns + 12 * MS, at.POSITION_SELECT, 1, 0x46 << 16).infos
     assert told >> 16 == 0x80 | 0x40 | 5
     (told,) = line.master.position(line.next_ns, infos=1).infos
-    assert told & 0xFFFF == 13 << 8
+    assert told == (0x80 | 0x40 | 6) << 16 | 13 << 8
+
+
+def test_a_memory_access_is_over_at_its_12_ms() -> None:
+    answers = Answers()
+    answers.supplement(0, at.POSITION_SELECT, Info.MEMORY_LSB << 16)
+    answers.supplement(0, at.POSITION_SEND, 13 << 16)
+    mode = at.MODES[at.SEND_POSITION_INFO]
+    for t_ns, busy in ((12 * MS - 1, 1), (12 * MS, 0)):
+        assert answers.bits(t_ns, at.SEND_POSITION_INFO, mode, 0, 0)[36 + 1 + 2] == busy
 
 
 def test_parameters_written_beside_positions() -> None:
@@ -244,7 +262,7 @@ def test_parameters_written_beside_positions() -> None:
     line.master.position(line.next_ns, at.POSITION_RECEIVE, 0, 3 << 16 | 0xCAFE)
     select(line, Info.MEMORY_MSB)
     (told,) = line.master.position(line.next_ns, at.POSITION_SEND, 1, 3 << 16).infos
-    assert told >> 16 & 0x20  # still writing
+    assert told >> 16 == 0x40 | 0x20 | 6  # still writing
     (told,) = line.master.position(line.next_ns + 12 * MS, infos=1).infos
     assert told & 0xFFFF == 3 << 8 | 0xCA
     line.master.position(line.next_ns, at.POSITION_TEST, 1, 0x21 << 16)
@@ -267,22 +285,42 @@ def test_a_supplement_waits_for_its_start_bit() -> None:
 
 def test_test_values() -> None:
     line = Line()
-    line.encoder.answers.test_values = 0x0123456789
-    assert line.master.test_values(0) == (False, 0x0123456789)
+    line.encoder.answers.test_values = 0x8123456789
+    assert line.master.test_values(0) == (False, 0x8123456789)
     line.encoder.answers.memory.raise_alarm(1)
-    assert line.master.test_values(line.next_ns) == (True, 0x0123456789)
+    assert line.master.test_values(line.next_ns) == (True, 0x8123456789)
 
 
 def test_a_reset_is_a_power_cycle_and_takes_50_ms() -> None:
-    line = Line(3)
+    line = Line(3, clock_hz=SLOW_HZ)
+    memory = line.encoder.answers.memory
     select(line, 0x42, 0x59)
+    line.master.parameter(line.next_ns, at.RECEIVE_TEST, 0x33)
+    line.master.position(line.next_ns, at.POSITION_SEND, 2, 13 << 16)
     line.master.parameter(line.next_ns, at.SELECT_MEMORY, 0xB9)
+    line.master.parameter(line.next_ns, at.RECEIVE_PARAMETER, 3, 1)
+    memory.raise_warning(2)
     line.master.parameter(line.next_ns, at.RECEIVE_RESET, 0)
     with pytest.raises(EndatError, match="no start bit"):
         line.master.position(line.next_ns + 20 * MS)
     told = line.master.position(line.next_ns + 40 * MS)
     assert (told.value, told.alarm, told.infos) == (3, True, ())
-    assert line.encoder.answers.memory.area == 0xA1
+    assert (memory.area, memory.warnings, line.encoder.recovery_ns) == (0xA1, 0, 20_000)
+    for info in (0x48, 0x45, 0x49):  # test port, parameter, test values
+        select(line, info)
+        assert line.master.position(line.next_ns, infos=1).infos == ((info & 0x1F | 0x40) << 16,)
+
+
+def test_a_reset_is_silent_for_50_ms_after_its_answer() -> None:
+    answers = Answers()
+    answers.power_up(7)
+    assert answers.silent_until_ns == 7 + 12 * MS + 50 * MS
+
+
+def test_numbers_of_areas_contents_and_alarms() -> None:
+    assert [*at.Area] == [0xA1, 0xA3, 0xA5, 0xA7, 0xA9, 0xAB, 0xAD, 0xB9, 0xBD, 0xBF]
+    assert [*Info] == [0x40, 0x42, 0x43, *range(0x45, 0x4D), 0x4F, 0x50, 0x59, 0x5F]
+    assert [*Alarm] == [1 << bit for bit in range(7)]
 
 
 def test_memory_access_takes_12_ms_and_positions_5_us() -> None:
@@ -341,6 +379,7 @@ def test_clock_high_in_the_middle_starts_again_and_clock_low_parks() -> None:
         encoder.edge(start, 0, 0)
         encoder.edge(start + held, 1, 0)
         assert encoder.phase is (Phase.COMMAND if fits else Phase.IDLE)
+        assert encoder.level(start + held) == int(fits)  # at rest the line is low
         line.master._t_ns = start + held + 100_000
 
 
