@@ -33,12 +33,12 @@ class Mcp2515:
         self._errata = errata
         self._memory = bytearray(at.SIZE)
         self._rts_pins = 7
-        self._loops = 0
         self._requested = 0
         self._flags = 0
         self._asserted = False
         self.mode = Mode.CONFIGURATION
-        self.times: BitTimes = decode(fosc_hz, 0, 0, 0)
+        self._fosc_hz = fosc_hz
+        self.times: BitTimes
         self.receiver = Receiver(self._memory)
         self.transmitter = Transmitter(self._memory, self._offer, port.withdraw)
         self.spi = SpiPort(self)
@@ -133,17 +133,18 @@ class Mcp2515:
 
     def request_to_send(self, buffers: int) -> None:
         """RTS for a set of buffers."""
-        for buffer in range(3):
+        for buffer, address in enumerate(at.TXBCTRL):
             if buffers >> buffer & 1:
-                self._request(buffer, self._memory[at.TXBCTRL[buffer]] | at.TXREQ, asked=True)
+                self._request(buffer, self._memory[address] | at.TXREQ, asked=True)
 
     def read_status(self) -> int:
         """Flags and requests, as READ STATUS orders them."""
         flags, memory = self._memory[at.CANINTF], self._memory
         status = flags & 3
-        for buffer in range(3):
-            request = memory[at.TXBCTRL[buffer]] & at.TXREQ
-            status |= (bool(request) | (flags >> (2 + buffer) & 1) << 1) << (2 + 2 * buffer)
+        for buffer, address in enumerate(at.TXBCTRL):
+            status |= (bool(memory[address] & at.TXREQ) | (flags >> (2 + buffer) & 1) << 1) << (
+                2 + 2 * buffer
+            )
         return status
 
     def rx_status(self) -> int:
@@ -175,11 +176,10 @@ class Mcp2515:
     def _enter(self, mode: Mode) -> None:
         self.mode = mode
         port = self.port
-        self._loops += 1
         self.transmitter.forget()
         port.asleep = mode is Mode.SLEEP
         memory = self._memory
-        self.times = decode(self.times.fosc_hz, memory[at.CNF1], memory[at.CNF2], memory[at.CNF3])
+        self.times = decode(self._fosc_hz, memory[at.CNF1], memory[at.CNF2], memory[at.CNF3])
         if mode not in (Mode.NORMAL, Mode.LISTEN_ONLY):
             port.online = False
             return
@@ -199,8 +199,8 @@ class Mcp2515:
     # --- sending ------------------------------------------------------------------------------------
     def _locked(self, address: int) -> bool:
         """Whether `address` is in a transmit buffer that waits to be sent."""
-        row, column = address & 0x70, address & 0x0F
-        return 0x30 <= row <= 0x50 and 1 <= column <= 0x0D and bool(self._memory[row] & at.TXREQ)
+        row = address & 0x70
+        return row in at.TXBCTRL and address != row and bool(self._memory[row] & at.TXREQ)
 
     def _request(self, buffer: int, value: int, *, asked: bool) -> None:
         """TXBnCTRL becomes `value`. asked: this instruction is what sets TXREQ."""
@@ -226,12 +226,11 @@ class Mcp2515:
         if transmitter.on_bus or buffer is None:
             return
         frame = transmitter.frame(buffer)
-        transmitter.take(buffer, frame)
-        self._loops = turn = self._loops + 1
+        looped = transmitter.take(buffer, frame)
         duration = round(frame_bits(frame) * 1e9 / self.times.bitrate)
 
         def through(t_ns: int) -> None:
-            if turn == self._loops:
+            if transmitter.current is looped:
                 self._received(t_ns, frame)
                 self._sent(t_ns, frame)
 

@@ -43,10 +43,9 @@ class Receiver:
 
     def __init__(self, memory: bytearray) -> None:
         self._memory = memory
-        self.refilter()
 
     def refilter(self) -> None:
-        """Masks or filters were written, 4 bytes each (SIDH, SIDL, EID8, EID0)."""
+        """Reset, or masks or filters were written, 4 bytes each (SIDH, SIDL, EID8, EID0)."""
         memory = self._memory
         self._masks = [bytes(memory[address : address + 4]) for address in MASK_ADDRESSES]
         self._filters = [bytes(memory[address : address + 4]) for address in FILTER_ADDRESSES]

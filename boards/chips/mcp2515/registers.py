@@ -2,7 +2,6 @@
 
 from enum import IntEnum, IntFlag
 
-RXF0SIDH, RXF3SIDH = 0x00, 0x10
 BFPCTRL, TXRTSCTRL = 0x0C, 0x0D
 CANSTAT, CANCTRL = 0x0E, 0x0F
 """Both repeat at every xE and xF."""

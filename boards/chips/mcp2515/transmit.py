@@ -68,10 +68,11 @@ class Transmitter:
             self.current = Outgoing(best, self.frame(best))
             self._offer(self.current.frame)
 
-    def take(self, buffer: int, frame: Frame) -> None:
-        """`buffer` is being sent without the bus (loop-back)."""
+    def take(self, buffer: int, frame: Frame) -> Outgoing:
+        """`buffer` is being sent without the bus (loop-back); it is `current` until it is through."""
         self.current = Outgoing(buffer, frame)
         self.on_bus = True
+        return self.current
 
     def control(self, buffer: int, value: int) -> None:
         """TXBnCTRL is written: a new request clears what became of the last one."""

@@ -157,6 +157,8 @@ def test_roll_over_and_overflow(number: int) -> None:
     bench.write(0x2B, ERR)
     bench.partner_sends(Frame(0x345, b"\x01"))
     assert bench.read(0x60) == 0x06 | number
+    bench.write(0x60, 0x04)
+    assert bench.read(0x60) == 0x06 | number  # FILHIT0 cannot be written
     bench.partner_sends(Frame(0x345, b"\x02"))
     assert bench.read(0x2C) == RX0 | RX1
     assert bench.read(0x70) == 6 + number
@@ -217,11 +219,20 @@ def test_what_a_receive_buffer_holds(frame: Frame, image: list[int], kind: int, 
     bench.partner_sends(frame)
     assert bench.spi(0x03, 0x61 + 0x10 * buffer, *[0] * 8)[2:] == image
     assert bench.read(0x60 + 0x10 * buffer) & 0x08 == (0x08 if frame.remote else 0)
-    assert bench.spi(0xB0, 0)[1] & 0x18 == kind << 3
+    assert bench.spi(0xB0, 0)[1] == 0x40 << buffer | kind << 3 | 2 * buffer  # RXM 11: its first filter
     bench.write(0x2C, 0)
     bench.partner_sends(Frame(1, b""))
     assert bench.read(0x60 + 0x10 * buffer) & 0x08 == 0
     assert bench.spi(0xB0, 0)[1] & 0x18 == 0
+
+
+def test_a_reset_clears_masks_and_filters() -> None:
+    bench = filtered({}, {})
+    bench.spi(0xC0)
+    bench.write(0x28, 0x82, 0xD0, 0x00)
+    bench.mode(NORMAL)
+    bench.partner_sends(Frame(0x345, b""))
+    assert bench.read(0x2C) == RX0
 
 
 def test_nothing_received_is_status_0() -> None:

@@ -112,7 +112,17 @@ def test_read_and_write_go_on_to_the_next_address_and_wrap() -> None:
     assert bench.read(0x00) == 0xAB
 
 
-def test_transmit_buffers_are_locked_while_they_wait() -> None:
+@pytest.mark.parametrize("buffer", range(3))
+def test_a_transmit_buffer_is_locked_while_it_waits(buffer: int) -> None:
+    bench, first = Bench(), 0x31 + 0x10 * buffer
+    bench.write(first, *range(1, 14))
+    told = bench.spi(0x03, first, *[0] * 13)
+    bench.write(first - 1, 0x08)
+    bench.write(first, *[0x15] * 13)
+    assert bench.spi(0x03, first, *[0] * 13) == told
+
+
+def test_only_the_buffer_that_waits_is_locked() -> None:
     bench = Bench()
     bench.load(1, 0x123, b"\x11\x22")
     bench.write(0x40, 0x08)
@@ -168,6 +178,8 @@ def test_status_instructions_repeat_while_selected() -> None:
     bench.write(0x2C, 0x15)
     assert bench.spi(0xA0, 0, 0)[1:] == [0b11001101] * 2
     assert bench.spi(0xB0, 0, 0)[1:] == [0x40] * 2
+    bench.write(0x2C, 0x18)
+    assert bench.spi(0xA0, 0)[1] == 0b11100100
 
 
 def test_an_unknown_or_broken_off_instruction_changes_nothing() -> None:
@@ -247,6 +259,8 @@ def test_pins_for_buffers_and_requests() -> None:
     assert bench.read(0x0D) == 0b010 | 0b100 << 3
     chip.drive_rts_pin(1, False)
     chip.drive_rts_pin(1, False)
+    bench.run()
+    chip.drive_rts_pin(1, False)  # it has been low all the time
     bench.run()
     assert [frame.identifier for frame in bench.heard] == [2]
 

@@ -280,6 +280,30 @@ def test_a_request_kept_selected_is_sent_twice_by_errata(
     assert len(bench.heard) == (2 if errata and selected else 1)
 
 
+def test_a_mode_comes_at_once_when_a_request_that_still_waits_is_taken_back() -> None:
+    bench = Bench().start()
+    bench.partner.send(Frame(0, bytes(8)), bench.queue.now_ns)
+    bench.run(0.02)
+    bench.load(0, 0x101)
+    bench.spi(0x81)
+    bench.mode(CONFIG)
+    assert bench.read(0x0E) & 0xE0 == NORMAL
+    bench.spi(0x05, 0x30, TXREQ, 0)
+    assert bench.read(0x0E) & 0xE0 == CONFIG
+
+
+def test_a_mode_comes_with_the_lost_arbitration_of_one_shot() -> None:
+    bench = Bench().start()
+    bench.write(0x0F, OSM)
+    bench.load(0, 0x101)
+    bench.partner.send(Frame(0x100, b""), bench.queue.now_ns)
+    bench.spi(0x81)
+    bench.mode(CONFIG)
+    assert bench.read(0x0E) & 0xE0 == NORMAL
+    bench.run(0.02)  # 12 bits of identifier, the frame has 47
+    assert bench.read(0x0E) & 0xE0 == CONFIG
+
+
 def test_loop_back_reaches_nobody_but_the_chip_and_takes_its_time() -> None:
     bench = Bench().start(LOOPBACK)
     for buffer in range(2):
