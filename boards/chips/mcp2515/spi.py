@@ -27,7 +27,7 @@ class Registers(Protocol):
     def read(self, address: int) -> int:
         """A register's value, 0..255."""
 
-    def write(self, address: int, value: int, mask: int = 0xFF) -> None:
+    def write(self, address: int, value: int, mask: int = ...) -> None:
         """Change the bits of `mask`."""
 
     def modify(self, address: int, mask: int, value: int) -> None:
@@ -71,9 +71,7 @@ class SpiPort:
 
     def select(self) -> None:
         """Chip select falls: the next byte is an instruction."""
-        if not self.selected:
-            self.selected = True
-            self._clear()
+        self.selected = True
 
     def deselect(self) -> None:
         """Chip select rises: what was begun and is not whole is forgotten."""

@@ -266,6 +266,8 @@ def test_pins_for_buffers_and_requests() -> None:
 
 
 def test_bytes_and_bits_clocked_while_chip_select_is_high_are_nobodys() -> None:
+    fresh = Bench().chip.spi
+    assert [fresh.exchange(byte) for byte in (0x03, 0x2A, 0)] == [0xFF] * 3
     bench = Bench().start()
     spi = bench.chip.spi
     assert [spi.exchange(byte) for byte in (0x02, 0x0F, 0x80)] == [0xFF] * 3
