@@ -126,7 +126,6 @@ def words() -> dict[tuple[int, int], int]:
     return {
         (Area.MANUFACTURER_0, 13): POSITION_BITS,
         (Area.MANUFACTURER_0, 14): 0x8000,
-        (Area.MANUFACTURER_1, 4): (1 << POSITION_BITS) & 0xFFFF,
         (Area.MANUFACTURER_1, 5): (1 << POSITION_BITS) >> 16,
         (Area.MANUFACTURER_2, 5): 0x0001,
     }

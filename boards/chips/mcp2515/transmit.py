@@ -82,7 +82,7 @@ class Transmitter:
         if value & TXREQ and not old & TXREQ:
             status = 0
         self._memory[address] = status | value & (TXREQ | TXP)
-        if value & TXREQ and self._memory[CANCTRL] & ABAT:
+        if self._memory[CANCTRL] & ABAT:
             self.abort_all()
 
     def abort_all(self) -> None:

@@ -2,11 +2,9 @@
 
 import pytest
 
-from boards.axis.config import FCY_HZ, TABLE
 from bus.protocol import AxisMode, AxisParameter, Opcode, Result, pack_command, unpack_target
 from bus.protocol.scales import rate_q16
 from tests.boards.lab import CENTRE, RA, Lab, axis_config
-from tests.boards.tables import times_ns
 
 TURN = 1 << 29
 FASTEST = 318_557_389
@@ -155,8 +153,3 @@ def test_B2_another_acceleration_is_in_force_at_once(lab: Lab, mode: AxisMode) -
     lab.run(0.5)
     assert lab.axis.motion.mode is mode
     assert lab.axis.motion.steady[0] == pytest.approx(rate_q16(720.0), rel=0.03)
-
-
-def test_B1_routines_take_the_times_that_are_published() -> None:
-    assert times_ns(TABLE, FCY_HZ) == {"control": (300, 40_000), "can": (300, 30_000)}
-    assert [line.level for line in TABLE] == [line.name == "can" for line in TABLE]

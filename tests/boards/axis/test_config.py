@@ -8,6 +8,7 @@ from boards.axis import config
 from boards.axis.config import AxisPeers, settings, steps
 from calibration.balances.effortchange import CREEP_RATE
 from tests.boards.lab import axis_config
+from tests.boards.tables import times_ns
 
 Q16_PER_ARCSEC_S = 112_896_000 / 1_296_000 / 200 * 65536
 """Counts of the incremental encoder per turn, 5 ms (paper, sections 2.2, 3.2 and 3.3)."""
@@ -28,6 +29,11 @@ def test_rates_are_those_of_table_1_and_of_the_sky() -> None:
 def test_angles_are_steps_of_29_bits() -> None:
     assert steps(1_296_000.0) == 1 << 29
     assert steps(-324_000.0) == -(1 << 27)
+
+
+def test_B1_routines_take_the_times_that_are_published() -> None:
+    assert times_ns(config.TABLE, config.FCY_HZ) == {"control": (300, 40_000), "can": (300, 30_000)}
+    assert [line.level for line in config.TABLE] == [line.name == "can" for line in config.TABLE]
 
 
 def test_urgent_routines_come_first_and_the_controllers_takes_5_ms() -> None:

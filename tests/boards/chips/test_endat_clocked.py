@@ -142,7 +142,7 @@ def test_memory_identifies_the_encoder() -> None:
         return data
 
     assert read(0xA1, 13) & 0x3F == 29
-    assert read(0xA1, 14) & 0x8000
+    assert read(0xA1, 14) == 0x8000
     assert read(0xA3, 1) == 0
     assert read(0xA3, 4) | read(0xA3, 5) << 16 == 1 << 29
     assert read(0xA5, 5) & 3 == 1  # EnDat 2.2

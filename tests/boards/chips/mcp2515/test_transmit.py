@@ -124,6 +124,12 @@ def test_abat_aborts_what_waits_and_spares_what_is_on_the_bus() -> None:
     assert len(bench.heard) == 2
 
 
+def test_abat_marks_no_buffer_that_did_not_wait() -> None:
+    bench = Bench().start()
+    bench.spi(0x05, 0x0F, ABAT, ABAT)
+    assert [bench.read(address) for address in TXCTRL] == [0, 0, 0]
+
+
 def test_one_on_the_bus_that_fails_after_its_abort_is_not_tried_again() -> None:
     for how in ("abat", "txreq"):
         bench = Bench().start()
