@@ -14,59 +14,8 @@ DBC_PATH = Path(__file__).with_name("final.dbc")
 """All boards in one file, for other people's tools."""
 _TYPE = 0x7F
 """Bits of an identifier that are the device type."""
-_INTRO = """# The protocol
-
-Made by `python -m docs.generate` from `bus/protocol/schmidt.dbc` and `bus/protocol/nodes/*.dbc`; change
-these, not this page. The files in `nodes` have the boards of the network `final`. `bus/protocol/final.dbc`,
-written with the page, has all boards.
-
-CAN 2.0A with standard identifiers, at 1 Mbit/s unless a scenario says otherwise. Every frame has eight bytes,
-little endian, and byte 0 is the device type.
-
-A COMMAND is answered exactly once by the device's REPLY, within `10` ms. A REPLY's Parameter repeats the
-number that GET_PARAMETER or SET_PARAMETER named. A frame with an identifier nobody accepts is acknowledged
-and ignored. The identifiers are ASSUMPTIONS: the paper prints none.
-"""
-_REPORTS = f"""
-## USB HID reports
-
-`64` bytes each way, without a report number: eight places of eight bytes.
-A place whose byte `0` is `0` is empty.
-
-From the gateway:
-
-| byte 0 | byte 1 | what |
-|---|---|---|
-| 0x01..0x7f: device type | any | a measurement: the eight bytes of frame 0x200 + device type |
-| 0x80 + device type | below 0x80: the opcode | REPLY, bytes 1..7 of frame 0x100 + device type |
-| 0x80 + device type | {SUMMARY_KIND:#04x} | SUMMARY or TARGET, bytes 1..7 of frame 0x300 + device type |
-| 0x80 + device type | {HEARTBEAT_KIND:#04x} | HEARTBEAT, bytes 1..7 of frame 0x700 + device type |
-
-A measurement of the nodes below stands in its place and in no other: the newest since the report before.
-All else takes places that are free, in the order of arrival.
-A report leaves when eight places are full or the oldest frame is `4` ms old, at the next millisecond of USB.
-
-To the gateway: up to eight COMMANDs, each sent as frame `0x080 + device type`, in the order of their places.
-
-| place | bytes | measurement of |
-|---|---|---|"""
-_PACKETS = f"""
-## RS232 packets
-
-`115200` baud, `8N1`, little endian. A packet of `{SAMPLES}` samples, `10` ms apart; each leaves once taken:
-
-| bytes | what |
-|---|---|
-| 0, 1 | sync, `{SYNC.hex(" ")}` |
-| 2 | device type, u8 |
-| 3 | sequence, u8: one more in every packet, modulo 256 |
-| 4..7 | time stamp, u32: the board's clock at the first sample, units of 100 µs, modulo 2³² |
-| 8.. | {SAMPLES} samples |
-| last 2 | CRC-16, u16, over all bytes between sync and CRC |
-
-The CRC has polynomial `0x1021` and begins with `0xffff`; it is not reflected, and there is no final XOR.
-
-A sync may come by chance among the samples: after a wrong CRC, search on one byte behind it."""
+_TEXT = Path(__file__).with_suffix(".md")
+"""The page's words; its tables are filled in."""
 
 
 def _everything() -> Any:
@@ -82,8 +31,6 @@ def _suffix(name: str) -> str:
 
 
 def _devices() -> Iterator[str]:
-    yield "\n## Devices\n"
-    yield "| device | type | frames |\n|---|---|---|"
     for device in DEVICES:
         names = [
             message.name for message in _everything().messages if message.name.startswith(f"{device.name}_")
@@ -93,8 +40,6 @@ def _devices() -> Iterator[str]:
 
 
 def _parameters() -> Iterator[str]:
-    yield "\n## Parameters of declared boards\n"
-    yield "| board | number | parameter | range | after power-up |\n|---|---|---|---|---|"
     for kind in KINDS:
         for number, name, low, high, default in map(astuple, kind.parameters):
             yield f"| {kind.name} | {number} | {name.upper()} | {low}..{high} | {default} |"
@@ -165,10 +110,15 @@ def page() -> str:
         device = message.name.rpartition("_")[0]
         key = _family(message.name), _suffix(message.name)
         shown.setdefault(key, (message, []))[1].append(device)
-    lines = [_INTRO.rstrip(), *_devices(), "\n## Frames in short\n"]
-    lines += ["| identifier less type | frame | boards | period | signals |", "|---|---|---|---|---|"]
-    lines += _in_short([message for message, _ in shown.values()])
-    lines += [*_parameters(), _REPORTS, *_places(), _PACKETS, *_samples(), "\n## Frames"]
-    for message, devices in shown.values():
-        lines += _message(message, devices)
-    return "\n".join(lines) + "\n"
+    frames = (line for each in shown.values() for line in _message(*each))
+    tables = {
+        "devices": _devices(), "short": _in_short([message for message, _ in shown.values()]),
+        "parameters": _parameters(), "places": _places(), "fields": _samples(), "frames": frames,
+    }  # fmt: skip
+    return _TEXT.read_text(encoding="utf-8").format(
+        summary=SUMMARY_KIND,
+        heartbeat=HEARTBEAT_KIND,
+        sync=SYNC.hex(" "),
+        samples=SAMPLES,
+        **{name: "\n".join(lines) for name, lines in tables.items()},
+    )
