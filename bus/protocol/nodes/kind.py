@@ -8,6 +8,9 @@ for them. That weather and power come twice makes the network the paper's "over 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
+
+import yaml
 
 from bus.protocol.names import Device
 
@@ -82,41 +85,15 @@ def check_kind(kind: Kind, beside: Iterable[Kind]) -> None:
             raise KindError(f"board {name}: name or device type {number:#04x} is taken")
 
 
-_HERE = Path(__file__).parent
+_FILE = Path(__file__).with_name("kinds.yaml")
 
-AUXILIARY = Kind(
-    "AUXILIARY",
-    {"AUXILIARY_RA": 0x23, "AUXILIARY_DEC": 0x24},
-    _HERE / "auxiliary.dbc",
-)
-DOME = Kind(
-    "DOME",
-    {"DOME": 0x71},
-    _HERE / "dome.dbc",
-    (
-        ParameterRow(1, "tolerance_centidegrees", 10, 1000, 50),
-        ParameterRow(2, "close_in_bad_weather", 0, 1, 1),
-    ),
-)
-WEATHER = Kind(
-    "WEATHER",
-    {"WEATHER_MAST": 0x72, "WEATHER_DOME": 0x74},
-    _HERE / "weather.dbc",
-    (
-        ParameterRow(1, "wind_limit_cm_s", 0, 6000, 1500),
-        ParameterRow(2, "humidity_limit_permille", 0, 1000, 900),
-        ParameterRow(3, "hold_s", 0, 3600, 300),
-    ),
-)
-POWER = Kind(
-    "POWER",
-    {"POWER_DRIVES": 0x73, "POWER_ROOM": 0x75},
-    _HERE / "power.dbc",
-    (
-        ParameterRow(1, "undervoltage_mv", 0, 30000, 20000),
-        ParameterRow(2, "overcurrent_ma", 0, 60000, 30000),
-    ),
-)
-KINDS = (AUXILIARY, DOME, WEATHER, POWER)
+
+def _kind(name: str, row: dict[str, Any]) -> Kind:
+    parameters = (ParameterRow(number, *said) for number, said in row.get("parameters", {}).items())
+    return Kind(name, row["nodes"], _FILE.with_name(f"{name.lower()}.dbc"), tuple(parameters))
+
+
+KINDS = tuple(_kind(*row) for row in yaml.safe_load(_FILE.read_text(encoding="utf-8")).items())
+AUXILIARY, DOME, WEATHER, POWER, *_ = KINDS
 DEVICES = (*Device, *(device for kind in KINDS for device in kind.devices()))
 """All boards that come along, the lab's first."""
