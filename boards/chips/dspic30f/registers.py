@@ -1,9 +1,8 @@
 """Registers of QEI, motor control PWM and ADC as tables: field -> (register, shift, bits). hardware.md 3.4; K
 where that has nothing."""
 
+from collections.abc import Mapping
 from enum import IntEnum
-
-from boards.chips.registers import Registers
 
 FIELDS: dict[str, tuple[str, int, int]] = {
     "CNTERR": ("QEICON", 15, 1), "INDX": ("QEICON", 12, 1), "UPDN": ("QEICON", 11, 1),
@@ -45,6 +44,38 @@ class Ssrc(IntEnum):
     TIMER3 = 0b010
     PWM = 0b011
     AUTO = 0b111
+
+
+class Registers:
+    """fields: field -> (register, shift, bits). widths: bits of each register. values: after a reset."""
+
+    def __init__(
+        self,
+        fields: Mapping[str, tuple[str, int, int]],
+        widths: Mapping[str, int],
+        values: Mapping[str, int],
+    ) -> None:
+        self._fields, self._widths, self._values = fields, widths, dict(values)
+
+    def __getitem__(self, register: str) -> int:
+        return self._values[register]
+
+    def __setitem__(self, register: str, value: int) -> None:
+        """Write a register; bits it does not have read as 0. Raises KeyError for one there is not."""
+        self._values[register] = value & (1 << self._widths[register]) - 1
+
+    def field(self, name: str) -> int:
+        """Value of a field."""
+        register, shift, bits = self._fields[name]
+        return self._values[register] >> shift & (1 << bits) - 1
+
+    def put(self, name: str, value: int) -> None:
+        """Change a field; raises ValueError when it does not fit."""
+        register, shift, bits = self._fields[name]
+        mask = (1 << bits) - 1
+        if not 0 <= value <= mask:
+            raise ValueError(f"{name} has {bits} bits, {value} does not fit")
+        self[register] = self._values[register] & ~(mask << shift) | value << shift
 
 
 def registers(**values: int) -> Registers:

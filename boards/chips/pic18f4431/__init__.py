@@ -1,6 +1,5 @@
-"""QEI and power control PWM of the PIC18F4431 at register level (DS39616D)."""
+"""QEI of the PIC18F4431 at register level (DS39616D)."""
 
-from boards.chips.pic18f4431.pwm import Pwm4431
 from boards.chips.pic18f4431.qei import Qei4431
 
-__all__ = ["Pwm4431", "Qei4431"]
+__all__ = ["Qei4431"]
