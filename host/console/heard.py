@@ -66,16 +66,11 @@ class HeardBus:
             ],
         )
 
-    def switch(self, board: str, on: bool) -> None:
-        """Nothing to switch."""
-
-    def start_fault(self, name: str, arguments: str) -> Future[str]:
+    def wish(self, _command: str) -> Future[str]:
         """Refused."""
-        return _refused()
-
-    def clear_fault(self, number: int) -> Future[str]:
-        """Refused."""
-        return _refused()
+        future: Future[str] = Future()
+        future.set_exception(ValueError("this is no emulated bus: nothing can be broken from here"))
+        return future
 
     def _node(self, device: Device) -> Node:
         heard_ns, data = self._client.link.heard_ns.get(device), self._client.link.heartbeats.get(device)
@@ -83,9 +78,3 @@ class HeardBus:
             return Node(device.name, False, "silent", 0, 0)
         tec, load = unpack_heartbeat(data).tec, self._loads.get(int(device), 0.0)
         return Node(device.name, True, "passive" if tec >= _PASSIVE else "active", tec, 0, load)
-
-
-def _refused() -> Future[str]:
-    future: Future[str] = Future()
-    future.set_exception(ValueError("this is no emulated bus: nothing can be broken from here"))
-    return future

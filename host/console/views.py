@@ -69,15 +69,9 @@ class BusView(Protocol):
     def look(self) -> BusState:
         """Everything at this moment; nodes in the order they joined."""
 
-    def switch(self, board: str, on: bool) -> None:
-        """Cut or give back the supply of a board; in force with the next slice of time."""
-
-    def start_fault(self, name: str, arguments: str) -> Future[str]:
-        """Start one with `name=value` words; the next slice does it. ValueError with one line: it cannot
-        be."""
-
-    def clear_fault(self, number: int) -> Future[str]:
-        """End one; the same."""
+    def wish(self, command: str) -> Future[str]:
+        """Have a command of the control plane (`power`, `fault`) carried out with the next slice of time: its
+        answer, or ValueError with one line."""
 
 
 @cache

@@ -46,17 +46,12 @@ class BusMirror:
         self._asked_s = monotonic()
         return self.state
 
-    def start_fault(self, name: str, arguments: str) -> Future[str]:
-        """Wished for; the next slice does it."""
-        return self._wish(f"fault start {name} {arguments}")
-
-    def clear_fault(self, number: int) -> Future[str]:
-        """Wished for; the next slice does it."""
-        return self._wish(f"fault clear {number}")
-
-    def switch(self, board: str, on: bool) -> None:
-        """Wished for; the next slice does it."""
-        self._wish(f"power {board} {'on' if on else 'off'}")
+    def wish(self, command: str) -> Future[str]:
+        """The next slice does it."""
+        number = next(self._numbers)
+        future = self._open[number] = Future()
+        self._send(("wish", number, command))
+        return future
 
     def done(self, number: int, text: str, refused: bool) -> None:
         """What became of a wish."""
@@ -67,12 +62,6 @@ class BusMirror:
             future.set_exception(ValueError(text))
         else:
             future.set_result(text)
-
-    def _wish(self, command: str) -> Future[str]:
-        number = next(self._numbers)
-        future = self._open[number] = Future()
-        self._send(("wish", number, command))
-        return future
 
 
 def cameras(scenario: Scenario, options: ServeOptions, guiding: ClientGuiding | None) -> tuple[Camera, ...]:

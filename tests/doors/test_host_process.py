@@ -66,17 +66,17 @@ def test_the_mirror_shows_the_bus_and_its_frames_in_words(network: str) -> None:
 
 def test_a_wish_is_done_or_refused_with_its_reason() -> None:
     both = Both()
-    on = both.mirror.start_fault("node_off", "node=FOCUS")
-    wrong = both.mirror.start_fault("nonsense", "")
-    torn = both.mirror.start_fault("node_off", "node")
+    on = both.mirror.wish("fault start node_off node=FOCUS")
+    wrong = both.mirror.wish("fault start nonsense")
+    torn = both.mirror.wish("fault start node_off node")
     both.carry()
     assert "is on" in on.result(0) and both.mirror.look().running
     assert not both.served.network.boards["FOCUS"].on
     for refused in (wrong, torn):
         with pytest.raises(ValueError, match=r"\w"):
             refused.result(0)
-    both.mirror.clear_fault(both.mirror.look().running[0][0])
-    both.mirror.switch("DISPLAY", False)
+    both.mirror.wish(f"fault clear {both.mirror.look().running[0][0]}")
+    both.mirror.wish("power DISPLAY off")
     for _ in range(40):  # it boots
         both.carry()
     assert both.served.network.boards["FOCUS"].on and not both.served.network.boards["DISPLAY"].on

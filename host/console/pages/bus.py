@@ -65,8 +65,8 @@ def _supply(shell: Shell, view: BusView) -> None:
         return
     chosen = shell.field(ui.select(list(names), value=names[0], label="Board"))
     with ui.row():
-        for text, on in (("Cut its supply", False), ("Give it back", True)):
-            shell.control(button(text, on_click=lambda state=on: view.switch(chosen.value, state)))
+        for text, on in (("Cut its supply", "off"), ("Give it back", "on")):
+            shell.control(button(text, on_click=lambda state=on: view.wish(f"power {chosen.value} {state}")))
 
 
 def _faults(shell: Shell, view: BusView) -> None:
@@ -90,7 +90,7 @@ def _faults(shell: Shell, view: BusView) -> None:
     chosen.on_value_change(show)
 
     async def start() -> None:
-        await _tell(shell, view.start_fault(chosen.value, given.value or ""))
+        await _tell(shell, view.wish(f"fault start {chosen.value} {given.value or ''}"))
 
     shell.control(button("Start it", on_click=start))
     fill = table(("number", "on"))
@@ -98,7 +98,7 @@ def _faults(shell: Shell, view: BusView) -> None:
         number = shell.field(ui.number("Number", value=0, min=0, format="%d").classes("w-24"))
 
         async def clear() -> None:
-            await _tell(shell, view.clear_fault(int(number.value or 0)))
+            await _tell(shell, view.wish(f"fault clear {int(number.value or 0)}"))
 
         shell.control(button("Clear it", on_click=clear))
     shell.each(lambda: fill([(str(each), text) for each, text in view.look().running]))
