@@ -3,35 +3,17 @@
 import sys
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 from scenarios.campaign import plan, table
 from scenarios.campaign.executor import each
 from scenarios.campaign.job import Row, run
+from scenarios.campaign.options import CampaignOptions
 from scenarios.campaign.report_page import write
 from scenarios.language.document import ScenarioError
 from scenarios.progress import shown
 from scenarios.run.probe import digest
-
-
-@dataclass(frozen=True, kw_only=True)
-class CampaignOptions:
-    """file: the campaign, or the name of one of schmidt's own. out: folder; None: out/ and the file's name.
-    jobs: processes (None: one per core); scheduler: a Dask scheduler instead. resume: go on with what is in
-    the folder."""
-
-    file: Path
-    out: Path | None = None
-    jobs: int | None = None
-    scheduler: str | None = None
-    resume: bool = False
-
-    @property
-    def folder(self) -> Path:
-        """Where everything goes."""
-        return Path("out") / self.file.stem if self.out is None else self.out
-
 
 COMPLETE, INCOMPLETE, INTERRUPTED = 0, 1, 130
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from scenarios.campaign.options import CampaignOptions
 from scenarios.options import (
     INTERRUPTED,
     PATH,
@@ -154,27 +155,14 @@ def _tell(result: Result, folder: Path, no_report: bool) -> None:
     )
 
 
-_jobs = click.option(
-    "--jobs", type=click.IntRange(1, 1024), help="Processes on this machine (default: one per core)."
-)
-_scheduler = click.option(
-    "--scheduler", metavar="tcp://HOST:PORT", help="A Dask scheduler instead (the extra cluster)."
-)
-
-
 @click.command(short_help="Run many variations of a scenario, with one report.")
-@click.argument("file", type=PATH)
-@click.option("--out", type=PATH, help="Output folder (default: out/<campaign>).")
-@_jobs
-@_scheduler
-@click.option("--resume", is_flag=True, help="Go on with what is in the folder.")
-def campaign(scheduler: str | None, **given: Any) -> None:
+@filled(CampaignOptions)
+def campaign(options: CampaignOptions) -> None:
     """Run many variations of one scenario and report on all of them (exit 0: every run was made)."""
-    need("calibrate", *(("cluster",) if scheduler else ()))
-    from scenarios.campaign.run_campaign import CampaignOptions
+    need("calibrate", *(("cluster",) if options.scheduler else ()))
     from scenarios.campaign.run_campaign import campaign as command
 
-    sys.exit(command(CampaignOptions(scheduler=scheduler, **given)))
+    sys.exit(command(options))
 
 
 @click.command(short_help="Repeat the paper's experiments.")

@@ -64,7 +64,8 @@ def nothing(job: Case) -> Row:
 
 def planned(folder: Path, runs: int, jobs: int) -> dict[str, float]:
     """A campaign of `runs` that do nothing, in this process; its peak memory, MiB, and time."""
-    from scenarios.campaign.run_campaign import CampaignOptions, campaign
+    from scenarios.campaign.options import CampaignOptions
+    from scenarios.campaign.run_campaign import campaign
 
     _write(folder, runs, 1)
     begin, cpu = time.perf_counter(), time.process_time()
