@@ -1,7 +1,7 @@
 """The current reading has another gain."""
 
 from plant.compiled import Floats
-from plant.effects.base import CATALOGUE, MOTOR_CHOICE, Effect, Parameter, Term
+from plant.effects.base import MOTOR_CHOICE, Effect, Parameter, Term
 from plant.effects.signals import CURRENT, Hook
 
 
@@ -20,6 +20,5 @@ EFFECT = Effect(
         Parameter("gain", "1", 0.5, 1.5, 1.08, "ASSUMPTION: sense resistor and amplifier tolerance"),
         MOTOR_CHOICE,
     ),
-    source=CATALOGUE,
     terms=(Term(Hook.CURRENT, formula),),
 )

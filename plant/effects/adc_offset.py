@@ -1,7 +1,7 @@
 """The current reading is shifted."""
 
 from plant.compiled import Floats
-from plant.effects.base import CATALOGUE, MOTOR_CHOICE, Effect, Parameter, Term
+from plant.effects.base import MOTOR_CHOICE, Effect, Parameter, Term
 from plant.effects.signals import Hook
 
 
@@ -20,6 +20,5 @@ EFFECT = Effect(
         Parameter("offset", "A", -1.0, 1.0, 0.05, "ASSUMPTION: amplifier offset; 6.1 mA per count"),
         MOTOR_CHOICE,
     ),
-    source=CATALOGUE,
     terms=(Term(Hook.CURRENT, formula),),
 )

@@ -1,7 +1,7 @@
 """The lagging motor holds less counter torque than friction: teeth part at reversal."""
 
 from plant.compiled import Floats
-from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
+from plant.effects.base import ASSUMED, Effect, Parameter, Term
 from plant.effects.signals import COMMAND, LAGGING, Hook
 
 
@@ -17,6 +17,6 @@ EFFECT = Effect(
     domain="reversal",
     equation="duty of the lagging motor -> (1 - a) duty",
     parameters=(Parameter("loss", "1", 0.0, 1.0, 0.9, ASSUMED),),
-    source="paper 2.2: 42 deg between the motors; " + CATALOGUE,
+    source="paper 2.2: 42 deg between the motors",
     terms=(Term(Hook.COMMAND, formula),),
 )

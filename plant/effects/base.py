@@ -67,6 +67,10 @@ class Term:
         return isinstance(self.hook, Hook) and self.hook < MOTOR_HOOKS
 
 
+OUTSIDE = 1000
+"""In the place of a row: behind all that docs/sources/effects.md has."""
+
+
 @dataclass(frozen=True)
 class Effect:
     """One effect of the catalogue.
@@ -80,6 +84,7 @@ class Effect:
     switches: parameters that change a constant of the axis once (plant/world.py), and which.
     catalogue_row: its place in lists; those outside the catalogue follow by name.
     odd: the torque changes its sign with the direction of motion.
+    source: what describes it, beside the catalogue where it has a row there. Raises TypeError without either.
     """
 
     name: str
@@ -87,15 +92,17 @@ class Effect:
     domain: Domain
     equation: str
     parameters: tuple[Parameter, ...]
-    source: str
     terms: tuple[Term, ...]
+    source: str = ""
     stages: tuple[str, ...] = ()
     constants: tuple[str, ...] = ()
     switches: Mapping[str, Switch] = field(default_factory=dict)
     odd: bool = False
-    catalogue_row: int = 1000
+    catalogue_row: int = OUTSIDE
 
     def __post_init__(self) -> None:
+        if not self.source and self.catalogue_row == OUTSIDE:
+            raise TypeError(f"effect {self.name}: it has neither a source nor a row of the catalogue")
         for term in self.terms:
             for function, first in ((term.formula, ["x"]), (term.update, ["x", "dt"])):
                 given = first if function is None else list(signature(function).parameters)
@@ -144,7 +151,6 @@ class Effect:
 SHAFTS = ("axis", "aux", "shaft2", "roller", "shaft1", "motor")
 MESHES = ("mesh1", "mesh2", "mesh3")
 STAGES = (*SHAFTS, *MESHES)
-CATALOGUE = "effects.md, catalogue"
 ASSUMED = "ASSUMPTION, docs/sources/effects.md"
 PHASE = Parameter("phase", "rad", -3.2, 3.2, 0.0, "free: unknown mounting angle")
 MOTOR_CHOICE = Parameter("motor", "1", 0.0, 2.0, 0.0, "choice: 0 both motors, 1 A, 2 B")

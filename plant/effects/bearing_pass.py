@@ -3,7 +3,7 @@
 from math import sin
 
 from plant.compiled import Floats
-from plant.effects.base import ASSUMED, CATALOGUE, PHASE, Effect, Parameter, Term
+from plant.effects.base import ASSUMED, PHASE, Effect, Parameter, Term
 from plant.effects.signals import ANGLE, Hook
 
 
@@ -23,6 +23,5 @@ EFFECT = Effect(
         Parameter("amplitude", "N m", 0.0, 200.0, 10.0, ASSUMED),
         PHASE,
     ),
-    source=CATALOGUE,
     terms=(Term(Hook.AXIS_TORQUE, formula),),
 )

@@ -1,7 +1,7 @@
 """Something starts to drag: a constant torque against the motion, from one moment to another."""
 
 from plant.compiled import Floats
-from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
+from plant.effects.base import ASSUMED, Effect, Parameter, Term
 from plant.effects.signals import COULOMB, STICTION, TIME, Hook
 
 
@@ -23,7 +23,6 @@ EFFECT = Effect(
         Parameter("start", "s", -1e6, 1e6, 0.0, "free: when it happens"),
         Parameter("duration", "s", 0.0, 1e9, 1e6, "free: for how long"),
     ),
-    source=CATALOGUE,
     terms=(Term(Hook.FRICTION, formula),),
     odd=True,
 )

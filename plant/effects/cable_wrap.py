@@ -3,7 +3,7 @@
 from math import exp
 
 from plant.compiled import Floats
-from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
+from plant.effects.base import ASSUMED, Effect, Parameter, Term
 from plant.effects.signals import ANGLE, RATE, Hook
 
 
@@ -30,6 +30,5 @@ EFFECT = Effect(
         Parameter("hysteresis", "N m", 0.0, 100.0, 8.0, ASSUMED),
         Parameter("width", "deg", 0.001, 30.0, 1.0, ASSUMED),
     ),
-    source=CATALOGUE,
     terms=(Term(Hook.AXIS_TORQUE, formula, update, memory=("wrap",), lasting=True),),
 )

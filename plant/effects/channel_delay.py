@@ -2,7 +2,7 @@
 
 The plant delays the reading itself; effort is delayed by the log writer."""
 
-from plant.effects.base import CATALOGUE, Effect, Parameter, Term
+from plant.effects.base import Effect, Parameter, Term
 from plant.effects.signals import Hook
 
 EFFECT = Effect(
@@ -22,6 +22,5 @@ EFFECT = Effect(
         ),
         Parameter("delay", "s", 0.0, 0.12, 0.005, "ASSUMPTION: one control period"),
     ),
-    source=CATALOGUE,
     terms=(Term(Hook.LOG),),
 )

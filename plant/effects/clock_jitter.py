@@ -1,6 +1,6 @@
 """The time stamps of the log jitter."""
 
-from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
+from plant.effects.base import ASSUMED, Effect, Parameter, Term
 from plant.effects.signals import Hook
 
 EFFECT = Effect(
@@ -10,6 +10,5 @@ EFFECT = Effect(
     domain="clock",
     equation="t -> t + s n, n standard normal",
     parameters=(Parameter("deviation", "s", 0.0, 0.005, 0.0005, ASSUMED),),
-    source=CATALOGUE,
     terms=(Term(Hook.LOG),),
 )

@@ -3,7 +3,7 @@
 from math import pi, sin
 
 from plant.compiled import Floats
-from plant.effects.base import ASSUMED, CATALOGUE, PHASE, Effect, Parameter, Term
+from plant.effects.base import ASSUMED, PHASE, Effect, Parameter, Term
 from plant.effects.signals import LAGGING, MOTOR, TIME, Hook
 
 
@@ -29,6 +29,5 @@ EFFECT = Effect(
         PHASE,
         Parameter("shape", "1", 0.0, 1.0, 0.0, "choice: 0 sine, 1 square"),
     ),
-    source=CATALOGUE,
     terms=(Term(Hook.COMMAND, formula),),
 )

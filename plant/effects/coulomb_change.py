@@ -1,7 +1,7 @@
 """Coulomb friction differs from the declared one."""
 
 from plant.compiled import Floats
-from plant.effects.base import CATALOGUE, Effect, Parameter, Term
+from plant.effects.base import Effect, Parameter, Term
 from plant.effects.signals import COULOMB, STICTION, Hook
 
 
@@ -18,7 +18,6 @@ EFFECT = Effect(
     domain="velocity",
     equation="Tc -> a Tc",
     parameters=(Parameter("factor", "1", 0.2, 3.0, 1.3, "hardware.md 2.3: +-20 % on Tc is fair"),),
-    source=CATALOGUE,
     terms=(Term(Hook.FRICTION, formula),),
     odd=True,
 )

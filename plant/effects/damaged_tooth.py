@@ -3,7 +3,7 @@
 from math import exp, floor, pi
 
 from plant.compiled import Floats
-from plant.effects.base import ASSUMED, CATALOGUE, PHASE, SHAFTS, Effect, Parameter, Term
+from plant.effects.base import ASSUMED, PHASE, SHAFTS, Effect, Parameter, Term
 from plant.effects.signals import ANGLE, Hook
 
 
@@ -25,7 +25,6 @@ EFFECT = Effect(
         PHASE,
         Parameter("width", "rad", 0.01, 1.0, 0.15, "ASSUMPTION: about one tooth of 21 to 27"),
     ),
-    source=CATALOGUE,
     terms=(Term(Hook.AXIS_TORQUE, formula),),
     stages=SHAFTS,
 )

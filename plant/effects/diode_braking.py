@@ -1,7 +1,7 @@
 """The lagging motor drives current through its freewheel diode and brakes."""
 
 from plant.compiled import Floats
-from plant.effects.base import CATALOGUE, Effect, Parameter, Term
+from plant.effects.base import Effect, Parameter, Term
 from plant.effects.signals import MOTOR, MOTOR_RATE, Hook
 
 
@@ -26,7 +26,7 @@ EFFECT = Effect(
         ),
         Parameter("drop", "V", 0.0, 1.5, 0.0, "ASSUMPTION: forward voltage of the freewheel diode"),
     ),
-    source="hardware.md 2.3; " + CATALOGUE,
+    source="hardware.md 2.3",
     terms=(Term(Hook.SWITCH, formula),),
     constants=("torque_constant", "resistance", "ratio"),
     switches={"share": "diode", "drop": "diode_drop"},

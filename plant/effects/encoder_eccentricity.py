@@ -5,7 +5,7 @@ The stage names the encoder: axis the absolute, roller the incremental, aux the 
 from math import sin
 
 from plant.compiled import Floats
-from plant.effects.base import ASSUMED, CATALOGUE, PHASE, Effect, Parameter, Term
+from plant.effects.base import ASSUMED, PHASE, Effect, Parameter, Term
 from plant.effects.signals import ANGLE
 
 
@@ -31,7 +31,6 @@ EFFECT = Effect(
         Parameter("second", "arcsec", 0.0, 60.0, 0.0, ASSUMED),
         Parameter("second_phase", "rad", -3.2, 3.2, 0.0, "free: unknown mounting angle"),
     ),
-    source=CATALOGUE,
     terms=(Term("encoder", formula),),
     stages=("axis", "roller", "aux"),
 )

@@ -3,7 +3,7 @@
 from math import sin
 
 from plant.compiled import Floats
-from plant.effects.base import ASSUMED, CATALOGUE, PHASE, Effect, Parameter, Term
+from plant.effects.base import ASSUMED, PHASE, Effect, Parameter, Term
 from plant.effects.signals import ANGLE
 
 
@@ -29,6 +29,5 @@ EFFECT = Effect(
         Parameter("encoder", "1", 0.0, 2.0, 1.0, "choice: 0 incremental, 1 absolute, 2 auxiliary"),
         Parameter("second_phase", "rad", -3.2, 3.2, 0.0, "free: unknown mounting angle"),
     ),
-    source=CATALOGUE,
     terms=(Term("encoder", formula),),
 )

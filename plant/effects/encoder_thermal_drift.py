@@ -1,7 +1,7 @@
 """One encoder drifts with the ambient temperature."""
 
 from plant.compiled import Floats
-from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
+from plant.effects.base import ASSUMED, Effect, Parameter, Term
 from plant.effects.signals import TEMPERATURE
 
 REFERENCE = 20.0  # degC
@@ -22,6 +22,5 @@ EFFECT = Effect(
         Parameter("drift", "arcsec/K", -60.0, 60.0, 2.0, ASSUMED),
         Parameter("encoder", "1", 0.0, 2.0, 1.0, "choice: 0 incremental, 1 absolute, 2 auxiliary"),
     ),
-    source=CATALOGUE,
     terms=(Term("encoder", formula),),
 )

@@ -1,7 +1,7 @@
 """Friction differs between the two directions."""
 
 from plant.compiled import Floats
-from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
+from plant.effects.base import ASSUMED, Effect, Parameter, Term
 from plant.effects.signals import COULOMB, RATE, SIGMA2, STICTION, Hook
 
 
@@ -23,7 +23,6 @@ EFFECT = Effect(
         Parameter("coulomb_asymmetry", "1", -0.6, 0.6, 0.15, ASSUMED),
         Parameter("viscous_asymmetry", "1", -0.6, 0.6, 0.0, ASSUMED),
     ),
-    source=CATALOGUE,
     terms=(Term(Hook.FRICTION, formula),),
     odd=True,
 )

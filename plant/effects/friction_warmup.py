@@ -3,7 +3,7 @@
 from math import exp
 
 from plant.compiled import Floats
-from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
+from plant.effects.base import ASSUMED, Effect, Parameter, Term
 from plant.effects.signals import COULOMB, RATE, SIGMA2, STICTION, Hook
 
 MOVING = 1e-6  # rad/s, 0.2 arcsec/s: below it the axis rests
@@ -33,7 +33,6 @@ EFFECT = Effect(
         Parameter("depth", "1", -2.0, 0.9, -0.3, ASSUMED),
         Parameter("time_constant", "s", 5.0, 3600.0, 120.0, ASSUMED),
     ),
-    source=CATALOGUE,
     terms=(Term(Hook.FRICTION, formula, update, memory=("warmth",)),),
     odd=True,
 )

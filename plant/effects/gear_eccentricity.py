@@ -5,7 +5,7 @@
 from math import sin
 
 from plant.compiled import Floats
-from plant.effects.base import ASSUMED, CATALOGUE, PHASE, SHAFTS, Effect, Parameter, Term
+from plant.effects.base import ASSUMED, PHASE, SHAFTS, Effect, Parameter, Term
 from plant.effects.signals import ANGLE, Hook
 
 
@@ -30,7 +30,7 @@ EFFECT = Effect(
         Parameter("kinematic", "arcsec", 0.0, 120.0, 0.0, ASSUMED),
         PHASE,
     ),
-    source="paper 4: imbalances in the gears; " + CATALOGUE,
+    source="paper 4: imbalances in the gears",
     terms=(Term(Hook.AXIS_TORQUE, formula), Term(Hook.TRANSMISSION, twist)),
     stages=SHAFTS,
 )

@@ -3,7 +3,7 @@
 from math import sin
 
 from plant.compiled import Floats
-from plant.effects.base import ASSUMED, CATALOGUE, MESHES, PHASE, Effect, Parameter, Term
+from plant.effects.base import ASSUMED, MESHES, PHASE, Effect, Parameter, Term
 from plant.effects.signals import ANGLE, Hook
 
 
@@ -19,7 +19,6 @@ EFFECT = Effect(
     domain="axis_angle",
     equation="T = A sin(order angle + phase)",
     parameters=(Parameter("amplitude", "N m", 0.0, 100.0, 8.0, ASSUMED), PHASE),
-    source=CATALOGUE,
     terms=(Term(Hook.AXIS_TORQUE, formula),),
     stages=MESHES,
 )

@@ -3,7 +3,7 @@
 from math import cos
 
 from plant.compiled import Floats
-from plant.effects.base import CATALOGUE, PHASE, Effect, Parameter, Term
+from plant.effects.base import PHASE, Effect, Parameter, Term
 from plant.effects.signals import ANGLE, Hook
 
 
@@ -24,6 +24,6 @@ EFFECT = Effect(
         ),
         PHASE,
     ),
-    source="paper 4: imbalances; " + CATALOGUE,
+    source="paper 4: imbalances",
     terms=(Term(Hook.AXIS_TORQUE, formula),),
 )

@@ -1,7 +1,7 @@
 """Friction that grows with the torque the gears transmit."""
 
 from plant.compiled import Floats
-from plant.effects.base import CATALOGUE, Effect, Parameter, Term
+from plant.effects.base import Effect, Parameter, Term
 from plant.effects.signals import COULOMB, STICTION, TORQUE, Hook
 
 
@@ -21,7 +21,6 @@ EFFECT = Effect(
     parameters=(
         Parameter("coefficient", "1", 0.0, 0.5, 0.1, "ASSUMPTION: gear efficiency 0.9 to 1, hardware.md 2.2"),
     ),
-    source=CATALOGUE,
     terms=(Term(Hook.FRICTION, formula),),
     odd=True,
 )

@@ -1,6 +1,6 @@
 """A counter of the log wraps or saturates."""
 
-from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
+from plant.effects.base import ASSUMED, Effect, Parameter, Term
 from plant.effects.signals import Hook
 
 EFFECT = Effect(
@@ -21,6 +21,5 @@ EFFECT = Effect(
         Parameter("bits", "1", 4.0, 29.0, 8.0, ASSUMED),
         Parameter("mode", "1", 0.0, 1.0, 0.0, "choice: 0 wrap, 1 saturate"),
     ),
-    source=CATALOGUE,
     terms=(Term(Hook.LOG),),
 )

@@ -1,7 +1,7 @@
 """The magnets are weaker than declared: torque and back EMF fall together."""
 
 from plant.compiled import Floats
-from plant.effects.base import ASSUMED, CATALOGUE, MOTOR_CHOICE, Effect, Parameter, Term
+from plant.effects.base import ASSUMED, MOTOR_CHOICE, Effect, Parameter, Term
 from plant.effects.signals import Hook
 
 
@@ -17,6 +17,5 @@ EFFECT = Effect(
     domain="velocity",
     equation="K -> K (1 - a)",
     parameters=(Parameter("loss", "1", -0.2, 0.6, 0.12, ASSUMED), MOTOR_CHOICE),
-    source=CATALOGUE,
     terms=(Term(Hook.CONSTANT, formula),),
 )

@@ -3,7 +3,7 @@
 from math import sin
 
 from plant.compiled import Floats
-from plant.effects.base import ASSUMED, CATALOGUE, MOTOR_CHOICE, PHASE, Effect, Parameter, Term
+from plant.effects.base import ASSUMED, MOTOR_CHOICE, PHASE, Effect, Parameter, Term
 from plant.effects.signals import MOTOR_ANGLE, Hook
 
 
@@ -24,6 +24,5 @@ EFFECT = Effect(
         PHASE,
         MOTOR_CHOICE,
     ),
-    source=CATALOGUE,
     terms=(Term(Hook.MOTOR_TORQUE, formula),),
 )

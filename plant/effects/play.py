@@ -1,7 +1,7 @@
 """The coupling of one encoder has a gap: its reading stands still at a reversal until the gap is closed."""
 
 from plant.compiled import Floats
-from plant.effects.base import CATALOGUE, Effect, Parameter, Term
+from plant.effects.base import Effect, Parameter, Term
 from plant.effects.signals import RATE
 
 
@@ -33,6 +33,6 @@ EFFECT = Effect(
             "choice: 0 incremental, 1 absolute, 2 auxiliary (the one behind a gear of its own, 1:10.8)",
         ),
     ),
-    source=CATALOGUE + "; paper 2.2: auxiliary encoder through a gear",
+    source="paper 2.2: auxiliary encoder through a gear",
     terms=(Term("encoder", formula, update, memory=("offset",)),),
 )

@@ -3,7 +3,7 @@
 from math import cos
 
 from plant.compiled import Floats
-from plant.effects.base import ASSUMED, CATALOGUE, PHASE, STAGES, Effect, Parameter, Term
+from plant.effects.base import ASSUMED, PHASE, STAGES, Effect, Parameter, Term
 from plant.effects.signals import ANGLE, COULOMB, STICTION, Hook
 
 
@@ -21,7 +21,6 @@ EFFECT = Effect(
     domain="axis_angle",
     equation="Tc, Ts -> Tc, Ts + c cos(order angle - phase)",
     parameters=(Parameter("amplitude", "N m", 0.0, 300.0, 30.0, ASSUMED), PHASE),
-    source=CATALOGUE,
     stages=STAGES,
     terms=(Term(Hook.FRICTION, formula),),
     odd=True,

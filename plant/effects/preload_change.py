@@ -1,7 +1,7 @@
 """The bearing preload changes: Ts and sigma2 scale together."""
 
 from plant.compiled import Floats
-from plant.effects.base import CATALOGUE, Effect, Parameter, Term
+from plant.effects.base import Effect, Parameter, Term
 from plant.effects.signals import COULOMB, SIGMA2, STICTION, TIME, Hook
 
 
@@ -27,7 +27,6 @@ EFFECT = Effect(
         Parameter("start", "s", -1e5, 1e5, 0.0, "free: when it happens"),
         Parameter("duration", "s", 0.01, 1e5, 1.0, "free: a step or a slow trend"),
     ),
-    source=CATALOGUE,
     terms=(Term(Hook.FRICTION, formula),),
     odd=True,
 )

@@ -1,7 +1,7 @@
 """Bristle stiffness and damping differ from the declared ones."""
 
 from plant.compiled import Floats
-from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
+from plant.effects.base import ASSUMED, Effect, Parameter, Term
 from plant.effects.signals import SIGMA0, SIGMA1, Hook
 
 
@@ -21,7 +21,6 @@ EFFECT = Effect(
         Parameter("stiffness_factor", "1", 0.05, 20.0, 0.5, "hardware.md 1.1: sigma0 1e6 to 1e8 N m/rad"),
         Parameter("damping_factor", "1", 0.0, 5.0, 1.0, ASSUMED),
     ),
-    source=CATALOGUE,
     terms=(Term(Hook.FRICTION, formula),),
     odd=True,
 )

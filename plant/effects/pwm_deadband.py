@@ -1,7 +1,7 @@
 """The driver swallows the first part of each pulse."""
 
 from plant.compiled import Floats
-from plant.effects.base import CATALOGUE, Effect, Parameter, Term
+from plant.effects.base import Effect, Parameter, Term
 from plant.effects.signals import COMMAND, Hook
 
 
@@ -19,6 +19,5 @@ EFFECT = Effect(
     parameters=(
         Parameter("deadband", "1", 0.0, 0.2, 0.01, "ASSUMPTION: gate delay of the IRF250 driver stage"),
     ),
-    source=CATALOGUE,
     terms=(Term(Hook.COMMAND, formula),),
 )

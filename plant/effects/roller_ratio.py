@@ -1,7 +1,7 @@
 """The friction roller is not 735:30: the incremental encoder has another scale."""
 
 from plant.compiled import Floats
-from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
+from plant.effects.base import ASSUMED, Effect, Parameter, Term
 from plant.effects.signals import ANGLE, Hook
 
 
@@ -17,6 +17,6 @@ EFFECT = Effect(
     domain="axis_angle",
     equation="incremental -> (1 + e) angle",
     parameters=(Parameter("error", "ppm", -20000.0, 20000.0, 500.0, ASSUMED),),
-    source="paper 2.2: friction roller; " + CATALOGUE,
+    source="paper 2.2: friction roller",
     terms=(Term(Hook.INCREMENTAL, formula),),
 )

@@ -1,7 +1,7 @@
 """The friction roller loses travel while the axis accelerates hard."""
 
 from plant.compiled import Floats
-from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
+from plant.effects.base import ASSUMED, Effect, Parameter, Term
 from plant.effects.signals import ACCELERATION, RATE, Hook
 
 
@@ -30,6 +30,6 @@ EFFECT = Effect(
         Parameter("threshold", "rad/s2", 0.0, 1.0, 0.005, ASSUMED),
         Parameter("creep", "s", 0.0, 1.0, 0.0, "ASSUMPTION: rate lost per acceleration beyond the threshold"),
     ),
-    source="paper 2.2: friction roller; " + CATALOGUE,
+    source="paper 2.2: friction roller",
     terms=(Term(Hook.INCREMENTAL, formula, update, memory=("lost",)),),
 )

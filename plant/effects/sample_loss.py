@@ -1,6 +1,6 @@
 """Packets of 25 samples are missing, samples are repeated."""
 
-from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
+from plant.effects.base import ASSUMED, Effect, Parameter, Term
 from plant.effects.signals import Hook
 
 EFFECT = Effect(
@@ -15,6 +15,5 @@ EFFECT = Effect(
         ),
         Parameter("repeats", "1", 0.0, 0.5, 0.0, ASSUMED),
     ),
-    source=CATALOGUE,
     terms=(Term(Hook.LOG),),
 )

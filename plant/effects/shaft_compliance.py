@@ -1,7 +1,7 @@
 """The trains wind up more than declared."""
 
 from plant.compiled import Floats
-from plant.effects.base import CATALOGUE, Effect, Parameter, Term
+from plant.effects.base import Effect, Parameter, Term
 from plant.effects.signals import TORQUE, Hook
 
 
@@ -21,7 +21,6 @@ EFFECT = Effect(
             "compliance", "arcsec/(N m)", 0.0, 2.0, 0.1, "ASSUMPTION: Table 1 winds up 0.067 arcsec per N m"
         ),
     ),
-    source=CATALOGUE,
     terms=(Term(Hook.SWITCH, formula),),
     switches={"compliance": "compliance"},
 )

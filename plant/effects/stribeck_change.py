@@ -1,7 +1,7 @@
 """Static friction, Stribeck rate or exponent differ from the declared ones."""
 
 from plant.compiled import Floats
-from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
+from plant.effects.base import ASSUMED, Effect, Parameter, Term
 from plant.effects.signals import STICTION, STRIBECK_EXPONENT, STRIBECK_RATE, Hook
 
 
@@ -23,7 +23,6 @@ EFFECT = Effect(
         Parameter("velocity_factor", "1", 0.2, 5.0, 1.0, ASSUMED),
         Parameter("exponent_change", "1", -1.5, 2.0, 0.0, "hardware.md 1.1: delta 0.5 to 2"),
     ),
-    source=CATALOGUE,
     terms=(Term(Hook.FRICTION, formula),),
     odd=True,
 )

@@ -3,7 +3,7 @@
 from math import pi
 
 from plant.compiled import Floats
-from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
+from plant.effects.base import ASSUMED, Effect, Parameter, Term
 from plant.effects.signals import RATE, Hook
 
 
@@ -34,7 +34,7 @@ EFFECT = Effect(
         Parameter("damping", "1", 0.001, 0.3, 0.02, ASSUMED),
         Parameter("inertia", "kg m2", 1.0, 1000.0, 200.0, ASSUMED),
     ),
-    source="paper Table 1: lock-rotor modes; " + CATALOGUE,
+    source="paper Table 1: lock-rotor modes",
     terms=(
         Term(
             Hook.AXIS_TORQUE,

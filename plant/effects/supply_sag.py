@@ -1,7 +1,7 @@
 """The supply gives way under load."""
 
 from plant.compiled import Floats
-from plant.effects.base import CATALOGUE, Effect, Parameter, Term
+from plant.effects.base import Effect, Parameter, Term
 from plant.effects.signals import SUPPLY_CURRENT, Hook
 
 
@@ -17,6 +17,5 @@ EFFECT = Effect(
     domain="current",
     equation="V = V0 - Rs sum(duty i)",
     parameters=(Parameter("resistance", "ohm", 0.0, 1.0, 0.15, "ASSUMPTION: supply and cable"),),
-    source=CATALOGUE,
     terms=(Term(Hook.SUPPLY, formula),),
 )

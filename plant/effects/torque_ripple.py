@@ -3,7 +3,7 @@
 from math import cos
 
 from plant.compiled import Floats
-from plant.effects.base import CATALOGUE, MOTOR_CHOICE, PHASE, Effect, Parameter, Term
+from plant.effects.base import MOTOR_CHOICE, PHASE, Effect, Parameter, Term
 from plant.effects.signals import MOTOR_ANGLE, Hook
 
 
@@ -24,6 +24,6 @@ EFFECT = Effect(
         PHASE,
         MOTOR_CHOICE,
     ),
-    source="paper 4: commuting effects; " + CATALOGUE,
+    source="paper 4: commuting effects",
     terms=(Term(Hook.CONSTANT, formula),),
 )

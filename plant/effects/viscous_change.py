@@ -1,7 +1,7 @@
 """Viscous friction differs from the declared one."""
 
 from plant.compiled import Floats
-from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
+from plant.effects.base import ASSUMED, Effect, Parameter, Term
 from plant.effects.signals import SIGMA2, Hook
 
 
@@ -17,7 +17,6 @@ EFFECT = Effect(
     domain="velocity",
     equation="sigma2 -> a sigma2",
     parameters=(Parameter("factor", "1", 0.2, 5.0, 1.3, ASSUMED),),
-    source=CATALOGUE,
     terms=(Term(Hook.FRICTION, formula),),
     odd=True,
 )

@@ -8,7 +8,7 @@ from math import exp, floor, sqrt
 from typing import Final
 
 from plant.compiled import Floats
-from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
+from plant.effects.base import ASSUMED, Effect, Parameter, Term
 from plant.effects.signals import TIME, Hook
 from plant.kernels.noise import normal
 
@@ -49,6 +49,6 @@ EFFECT = Effect(
         Parameter("deviation", "N m", 0.0, 200.0, 10.0, ASSUMED),
         Parameter("correlation_time", "s", 0.05, 100.0, 2.0, ASSUMED),
     ),
-    source="von Karman, Proc. Nat. Acad. Sci. 34 (1948); " + CATALOGUE,
+    source="von Karman, Proc. Nat. Acad. Sci. 34 (1948)",
     terms=(Term(Hook.AXIS_TORQUE, formula, update, memory=("slow", "middle", "fast")),),
 )

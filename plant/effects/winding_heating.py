@@ -3,7 +3,7 @@
 from math import exp
 
 from plant.compiled import Floats
-from plant.effects.base import ASSUMED, CATALOGUE, Effect, Parameter, Term
+from plant.effects.base import ASSUMED, Effect, Parameter, Term
 from plant.effects.signals import CURRENT, Hook
 
 COPPER = 0.00393  # 1/K, temperature coefficient of copper at 20 degC
@@ -32,7 +32,6 @@ EFFECT = Effect(
         Parameter("thermal_resistance", "K/W", 0.0, 10.0, 1.5, ASSUMED),
         Parameter("time_constant", "s", 10.0, 7200.0, 600.0, ASSUMED),
     ),
-    source=CATALOGUE,
     terms=(Term(Hook.RESISTANCE, formula, update, memory=("warmth",), lasting=True),),
     constants=("winding",),
 )

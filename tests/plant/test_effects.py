@@ -12,7 +12,7 @@ import pytest
 
 from plant import model
 from plant.effects import REGISTRY
-from plant.effects.base import STAGES, Term
+from plant.effects.base import OUTSIDE, STAGES, Term
 from plant.effects.signals import MEMORY, MOTOR, SEED, TIME, VECTOR, Hook
 from plant.evaluate import values_over
 from plant.kernels.layout import ROW, ROW_MEMORY
@@ -123,11 +123,16 @@ def test_names_are_those_of_the_catalogue() -> None:
 def test_every_effect_carries_its_own_name_bounds_units_and_sources() -> None:
     for name, effect in REGISTRY.items():
         assert effect.name == name
-        assert effect.equation and effect.source
+        assert effect.equation
         assert set(effect.stages) <= set(STAGES)
         for parameter in effect.parameters:
             assert parameter.low <= parameter.default <= parameter.high, (name, parameter.name)
             assert parameter.unit in UNITS and parameter.source, (name, parameter.name)
+
+
+def test_an_effect_outside_the_catalogue_says_what_describes_it() -> None:
+    with pytest.raises(TypeError, match="gear_mesh: it has neither a source nor a row"):
+        dataclasses.replace(REGISTRY["gear_mesh"], catalogue_row=OUTSIDE)
 
 
 @pytest.mark.parametrize("name", [n for n in REGISTRY if n not in ("unknown", "wind_torque")])
