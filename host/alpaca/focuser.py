@@ -1,5 +1,6 @@
 """IFocuserV4: the focus drive in half steps of 6.25 µm, 0 at the inner end."""
 
+from bus.protocol import FocusFlag
 from host.alpaca.device import Device, Member, fixed, missing_put, table, unknown
 from host.alpaca.requests import Parameters, within
 from host.procedures.focus import TRAVEL_HALF_STEPS
@@ -25,8 +26,8 @@ class FocuserDevice(Device):
         now = self.now.focus
         if now is None:
             raise unknown()
-        moving = now.moving or self.desk.telescope.focuser.moving
-        return {"IsMoving": moving, "Position": now.half_steps + TRAVEL_HALF_STEPS}
+        moving = bool(now.flags & FocusFlag.MOVING) or self.desk.telescope.focuser.moving
+        return {"IsMoving": moving, "Position": now.position + TRAVEL_HALF_STEPS}
 
 
 async def _move(device: FocuserDevice, given: Parameters) -> None:

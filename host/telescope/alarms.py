@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from enum import IntEnum
 from typing import Final
 
-from bus.protocol import State
+from bus.protocol import FocusFlag, State
 from bus.protocol.nodes import DOME, WEATHER
 from host.client import SILENCE_NS
 from host.telescope.house import House
@@ -160,7 +160,9 @@ def of_telescope(telescope: Telescope) -> dict[str, str]:
         "lock": "Consoles locked" if now.locked else "Consoles unlocked",
     }  # fmt: skip
     if (focus := now.focus) is not None:
-        found["focus"] = "Focus moves" if focus.moving else f"Focus at {focus.half_steps:+d} half steps"
+        found["focus"] = (
+            "Focus moves" if focus.flags & FocusFlag.MOVING else f"Focus at {focus.position:+d} half steps"
+        )
     dome = house.reading("DOME") if house.boards(DOME) else None
     if dome is not None:
         ends = "open" if dome["Opened"] else "closed" if dome["Closed"] else "between its ends"

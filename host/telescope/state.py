@@ -5,7 +5,7 @@ from typing import NamedTuple
 from bus.protocol import (
     AxisMode,
     Device,
-    FocusFlag,
+    Focus,
     Health,
     MotionFlag,
     State,
@@ -53,25 +53,12 @@ class AxisState(NamedTuple):
     """The auxiliary encoder at `latched_s`; None: no board, or nothing of it yet."""
 
 
-class FocusState(NamedTuple):
-    """The focus drive: half steps of 6.25 µm, encoder counts, LVDT in ADC counts (0..1023)."""
-
-    half_steps: int
-    encoder: int
-    lvdt: int
-    moving: bool
-    referenced: bool
-    hold: bool
-    free: bool
-
-
 class BoardState(NamedTuple):
     """One board as its heartbeat shows it; `health` is the answer to the last PING, None before one."""
 
     device: Device
     alive: bool
     state: State | None
-    uptime_s: int
     overruns: int
     tec: int
     health: Health | None
@@ -83,7 +70,8 @@ class Snapshot(NamedTuple):
     t_s: float
     ra: AxisState
     dec: AxisState
-    focus: FocusState | None
+    focus: Focus | None
+    """Half steps of 6.25 µm, encoder counts, LVDT in ADC counts (0..1023)."""
     boards: tuple[BoardState, ...]
     activity: str
     powered: bool
@@ -131,23 +119,6 @@ def axis_state(client: Client, name: str) -> AxisState:
     )
 
 
-def focus_state(client: Client) -> FocusState | None:
-    """The focus from its last frame."""
-    now = client.focus()
-    if now is None:
-        return None
-    flags = FocusFlag(now.flags)
-    return FocusState(
-        half_steps=now.position,
-        encoder=now.encoder,
-        lvdt=now.lvdt,
-        moving=bool(flags & FocusFlag.MOVING),
-        referenced=bool(flags & FocusFlag.REFERENCED),
-        hold=bool(flags & FocusFlag.HOLD),
-        free=bool(flags & FocusFlag.FREE),
-    )
-
-
 def board_states(client: Client) -> tuple[BoardState, ...]:
     """Every board that is expected to live."""
     states = []
@@ -159,7 +130,6 @@ def board_states(client: Client) -> tuple[BoardState, ...]:
                 device=device,
                 alive=beat is not None and client.now_ns - heard_ns <= SILENCE_NS,
                 state=State(beat.state) if beat and beat.state in _STATES else None,
-                uptime_s=beat.uptime if beat else 0,
                 overruns=beat.overruns if beat else 0,
                 tec=beat.tec if beat else 0,
                 health=client.health.get(device),

@@ -24,7 +24,7 @@ from host.telescope.focuser import Focuser
 from host.telescope.house import House
 from host.telescope.jobs import Activity, Job, Reason, Refused, Side
 from host.telescope.paddle import Paddle
-from host.telescope.state import Snapshot, axis_state, board_states, focus_state, stale_boards
+from host.telescope.state import Snapshot, axis_state, board_states, stale_boards
 
 
 class Boards:
@@ -178,7 +178,7 @@ class Telescope:
             t_s=client.now_s,
             ra=axis_state(client, "ra"),
             dec=axis_state(client, "dec"),
-            focus=focus_state(client),
+            focus=client.focus(),
             boards=board_states(client),
             activity=drive.activity.value,
             powered=drive.powered,

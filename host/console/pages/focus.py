@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from nicegui import ui
 
-from bus.protocol import Device
+from bus.protocol import Device, FocusFlag
 from host.console.figures import number
 from host.console.plots import options
 from host.console.shell import Shell, box, button, stale
@@ -41,19 +41,20 @@ def _readings(shell: Shell) -> None:
     @shell.each
     def refresh() -> None:
         now = shell.desk.now.focus
-        moving = now is not None and now.moving
+        moving = now is not None and bool(now.flags & FocusFlag.MOVING)
         lamp.classes(add="on" if moving else None, remove=None if moving else "on")
         lamp.props(f'aria-label="{"moving" if moving else "not moving"}"')
         for label in (steps, *labels.values()):
             stale(label, Device.FOCUS in shell.desk.now.stale)
         if now is None:
             return
-        steps.set_text(f"{now.half_steps:+d} half steps")
-        labels["from the middle"].set_text(number(now.half_steps * MICRONS / 1000, "+.4f", " mm"))
+        steps.set_text(f"{now.position:+d} half steps")
+        labels["from the middle"].set_text(number(now.position * MICRONS / 1000, "+.4f", " mm"))
         labels["LVDT"].set_text(f"{now.lvdt} counts, {(now.lvdt - 512) * LVDT_MM:+.2f} mm")
         labels["encoder"].set_text(f"{now.encoder} counts")
-        words = ["free" if now.free else "hold" if now.hold else "energised"]
-        words.append("referenced" if now.referenced else "not referenced")
+        flags = FocusFlag(now.flags)
+        words = ["free" if FocusFlag.FREE in flags else "hold" if FocusFlag.HOLD in flags else "energised"]
+        words.append("referenced" if FocusFlag.REFERENCED in flags else "not referenced")
         labels["state"].set_text(", ".join(words))
 
 
@@ -118,7 +119,7 @@ def curve(shell: Shell) -> None:
                 if now is None or not width.value or width.value <= 0:
                     shell.say("a width above 0 is needed, and a focus that tells where it is", bad=True)
                 else:
-                    points.append((now.half_steps, float(width.value)))
+                    points.append((now.position, float(width.value)))
 
             async def go() -> None:
                 found = best(points)

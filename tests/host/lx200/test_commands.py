@@ -324,7 +324,7 @@ def test_focus_keys(door: Door, client: Client) -> None:
     def position() -> int:
         focus = door.telescope.snapshot.focus
         assert focus
-        return focus.half_steps
+        return focus.position
 
     start = position()
     client.send(b":FF#:F-#")

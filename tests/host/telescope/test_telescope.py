@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from bus.protocol import AxisMode, Device, Health, SpeedClass
+from bus.protocol import AxisMode, Device, FocusFlag, Health, SpeedClass
 from bus.units import ARCSEC_PER_RAD
 from host.telescope import DriveRate, Reason, Refused
 from tests.host.inprocess import HostInProcess
@@ -194,19 +194,24 @@ def test_a_dead_encoder_board_ends_tracking_and_says_so(rig: Rig) -> None:
     assert "AXIS_DEC" in " ".join(entry.text for entry in rig.pc.journal.entries if entry.kind == "error")
 
 
+def _moving(rig: Rig) -> bool:
+    focus = rig.telescope.snapshot.focus
+    return focus is not None and bool(focus.flags & FocusFlag.MOVING)
+
+
 def test_H3_focus_moves_steps_holds_and_frees(rig: Rig) -> None:
     rig.run(lambda t: t.focuser.reference())
     rig.run(lambda t: t.focuser.move_to(100))
     rig.run(lambda t: t.focuser.step(-3))
     focus = rig.telescope.snapshot.focus
-    assert focus and focus.half_steps == 97 and focus.referenced and not focus.moving
+    assert focus and focus.position == 97 and focus.flags & FocusFlag.REFERENCED and not _moving(rig)
     rig.do(lambda t: t.focuser.move_to(-700))
     rig.advance(0.5)
-    assert rig.telescope.snapshot.focus and rig.telescope.snapshot.focus.moving
+    assert _moving(rig)
     rig.run(lambda t: t.focuser.hold())
     rig.advance(1.0)
     focus = rig.telescope.snapshot.focus
-    assert focus and not focus.moving and -700 < focus.half_steps < 97
+    assert focus and not _moving(rig) and -700 < focus.position < 97
     with pytest.raises(Refused):
         rig.do(lambda t: t.focuser.move_to(900))
     rig.run(lambda t: t.focuser.free())
