@@ -2,59 +2,17 @@
 fits."""
 
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
 
 from bus.conformance.boards import Board
+from bus.conformance.families import FAMILIES, NOTHING, Case
 from bus.conformance.link import Answers, Link
 from bus.conformance.result import CheckResult, doubted, judged, told
-from bus.protocol import Device, Health, Opcode, Reply, Result, SpeedClass, pack_command
+from bus.protocol import Device, Health, Opcode, Reply, Result, pack_command
 from bus.protocol.nodes import arguments_of, kind_of
 
-Command = tuple[Opcode, tuple[int, ...]]
-"""An opcode and its arguments."""
 _OK = (Result.OK,)
 _REFUSED_TOO = (Result.OK, Result.NOT_ALLOWED)
-"""What changes nothing may still be refused while the axis is off."""
 _EXISTS_OR_NOT = (Result.OK, Result.OUT_OF_RANGE)
-
-
-class Case(NamedTuple):
-    """A command with arguments, the results that are right, and whether it powers or moves something."""
-
-    opcode: Opcode
-    arguments: tuple[int, ...]
-    results: tuple[Result, ...]
-    moves: bool = False
-
-
-_AXIS = (
-    Case(Opcode.POWER, (0,), _OK),
-    Case(Opcode.STOP, (), _OK),
-    Case(Opcode.SET_RATE, (0,), _REFUSED_TOO),
-    Case(Opcode.SET_CLASS, (SpeedClass.FINE, 0), _REFUSED_TOO),
-    Case(Opcode.TRACK_RATE, (0,), _REFUSED_TOO),
-    Case(Opcode.OPEN_LOOP, (0,), _REFUSED_TOO),
-    Case(Opcode.NUDGE, (0,), _REFUSED_TOO),
-    Case(Opcode.MOVE_TO, (0, SpeedClass.FINE), (Result.NOT_ALLOWED, Result.OUT_OF_RANGE)),
-    Case(Opcode.POWER, (1,), _OK, True),
-    Case(Opcode.SET_RATE, (0,), _OK, True),
-    Case(Opcode.SET_CLASS, (SpeedClass.GUIDE, 1), _OK, True),
-    Case(Opcode.TRACK_RATE, (0,), _OK, True),
-    Case(Opcode.NUDGE, (100,), _OK, True),
-    Case(Opcode.OPEN_LOOP, (0,), _OK, True),
-    Case(Opcode.STOP, (), _OK, True),
-    Case(Opcode.POWER, (0,), _OK, True),
-)
-_FOCUS = (
-    Case(Opcode.FOCUS_HOLD, (), _OK),
-    Case(Opcode.FOCUS_STEP, (0,), _EXISTS_OR_NOT),
-    Case(Opcode.FOCUS_REFERENCE, (), _REFUSED_TOO, True),
-    Case(Opcode.FOCUS_STEP, (1,), _REFUSED_TOO, True),
-    Case(Opcode.FOCUS_MOVE_TO, (0,), _REFUSED_TOO, True),
-    Case(Opcode.FOCUS_FREE, (), _OK, True),
-)
-_DISPLAY = (Case(Opcode.BRIGHTNESS, (100,), _OK),)
-_FAMILIES = {"AXIS": _AXIS, "FOCUS": _FOCUS, "DISPLAY": _DISPLAY}
 _PARAMETER = 1
 """Axis boards have it; a board without parameters says out of range."""
 
@@ -110,7 +68,7 @@ def check_commands(link: Link, board: Board) -> Iterator[CheckResult]:
     observed = "no reply" if health is None else f"{health:#x}"
     yield doubted("health", name, well, "0", observed)
     yield from _parameters(link, board)
-    cases = _FAMILIES.get(board.family) or declared_cases(board.model)
+    cases = FAMILIES.get(board.family, NOTHING).commands or declared_cases(board.model)
     for case in cases:
         if case.moves and not link.settings.motion:
             continue

@@ -4,7 +4,8 @@ from collections.abc import Iterator
 from typing import Final
 
 from bus.conformance.boards import Board
-from bus.conformance.commands import Command, asked
+from bus.conformance.commands import asked
+from bus.conformance.families import FAMILIES, NOTHING, Command
 from bus.conformance.link import Link
 from bus.conformance.result import CheckResult, judged
 from bus.protocol import HARMONICS, OBSERVER_CELLS, AxisParameter, Opcode, Reply, Result, pack_command
@@ -45,34 +46,6 @@ PARAMETERS: dict[str, dict[int, tuple[int, int]]] = {
 """Type of board -> parameter -> lowest and highest value, in the parameter's own unit. A test compares them
 with the firmware's. Whether 1 is taken as OBSERVER hangs on its coefficients, so it is not here."""
 
-_AT: dict[str, tuple[Command, ...]] = {
-    "AXIS": (
-        (Opcode.SET_RATE, (_FASTEST,)),
-        (Opcode.SET_RATE, (-_FASTEST,)),
-        (Opcode.OPEN_LOOP, (3000,)),
-        (Opcode.OPEN_LOOP, (-3000,)),
-        (Opcode.SET_CLASS, (1, -1)),
-        (Opcode.SET_CLASS, (5, 1)),
-    ),
-    "DISPLAY": ((Opcode.BRIGHTNESS, (0,)), (Opcode.BRIGHTNESS, (100,))),
-}
-"""At the limit. An axis is off meanwhile, so it says so; they are sent with --motion only: one that does not
-look at its state would move."""
-_BEYOND: dict[str, tuple[Command, ...]] = {
-    "AXIS": (
-        (Opcode.SET_RATE, (_FASTEST + 1,)),
-        (Opcode.SET_RATE, (-_FASTEST - 1,)),
-        (Opcode.OPEN_LOOP, (3001,)),
-        (Opcode.OPEN_LOOP, (-3001,)),
-        (Opcode.SET_CLASS, (0, 1)),
-        (Opcode.SET_CLASS, (6, 1)),
-        (Opcode.SET_CLASS, (1, -2)),
-        (Opcode.SET_CLASS, (1, 2)),
-        (Opcode.POWER, (255,)),
-    ),
-    "FOCUS": ((Opcode.FOCUS_MOVE_TO, (801,)), (Opcode.FOCUS_MOVE_TO, (-801,))),  # 5 mm at 6.25 um
-    "DISPLAY": ((Opcode.BRIGHTNESS, (255,)),),
-}
 _RIGHT = {"AXIS": Result.NOT_ALLOWED, "DISPLAY": Result.OK}
 
 
@@ -80,10 +53,10 @@ def check_limits(link: Link, board: Board) -> Iterator[CheckResult]:
     """Parameters and arguments; nothing is left changed."""
     for number, (low, high) in parameters_of(board).items():
         yield from _parameter(link, board, number, low, high)
-    wanted = [(each, Result.OUT_OF_RANGE) for each in _BEYOND.get(board.family, ())]
-    wanted += [(each, Result.OUT_OF_RANGE) for each in _around(link, board)]
+    family = FAMILIES.get(board.family, NOTHING)
+    wanted = [(each, Result.OUT_OF_RANGE) for each in (*family.beyond, *_around(link, board))]
     if link.settings.motion or board.family != "AXIS":
-        wanted += [(each, _RIGHT[board.family]) for each in _AT.get(board.family, ())]
+        wanted += [(each, _RIGHT[board.family]) for each in family.at]
     for (opcode, arguments), result in wanted:
         subject = f"{board.name} {opcode.name} {' '.join(map(str, arguments))}"
         data = pack_command(board.device, opcode, *arguments)

@@ -7,28 +7,15 @@ import struct
 from collections.abc import Iterator
 
 from bus.conformance.boards import Board
-from bus.conformance.commands import Command, asked
+from bus.conformance.commands import asked
+from bus.conformance.families import FAMILIES, NOTHING, Command
 from bus.conformance.link import Link
 from bus.conformance.result import CheckResult, judged
-from bus.protocol import COMMAND_BASE, REPLY_BASE, Device, Opcode, Result, SpeedClass, layout_of, pack_command
+from bus.protocol import COMMAND_BASE, REPLY_BASE, Device, Opcode, Result, layout_of, pack_command
 from bus.protocol.nodes import arguments_of, kind_of
 
 _UNKNOWN_OPCODES = (0x7E, 0xFE)
 _UNKNOWN_PARAMETER = 200
-_OUT_OF_RANGE: dict[str, tuple[Command, ...]] = {
-    "AXIS": (
-        (Opcode.SET_PARAMETER, (1, 99)),  # the counter split goes to 25 %
-        (Opcode.POWER, (2,)),
-        (Opcode.SET_CLASS, (9, 1)),
-        (Opcode.SET_CLASS, (1, 5)),
-        (Opcode.SET_RATE, (0x7FFF_FFFF,)),
-        (Opcode.TRACK_RATE, (-0x8000_0000,)),
-        (Opcode.OPEN_LOOP, (3001,)),
-        (Opcode.MOVE_TO, (0xFFFF_FFFF, 1)),
-    ),
-    "FOCUS": ((Opcode.FOCUS_MOVE_TO, (32767,)),),
-    "DISPLAY": ((Opcode.BRIGHTNESS, (101,)),),
-}
 _UNKNOWN_IDENTIFIERS = (0x07F, 0x0FF, 0x6AA, 0x7FE)
 """Nobody has the device types 0x7f and 0x7e; 0x6aa is in no range; 0x07f is below them all."""
 
@@ -52,7 +39,7 @@ def check_misuse(link: Link, board: Board) -> Iterator[CheckResult]:
         (Opcode.GET_PARAMETER, (_UNKNOWN_PARAMETER,)),
         (Opcode.SET_PARAMETER, (_UNKNOWN_PARAMETER, 0)),
     ]
-    wrong += _OUT_OF_RANGE.get(board.family, ()) or declared_misuse(board.model)
+    wrong += FAMILIES.get(board.family, NOTHING).out_of_range or declared_misuse(board.model)
     for known, arguments in wrong:
         data = pack_command(device, known, *arguments)
         subject = f"{name} {known.name} {' '.join(map(str, arguments))}"
@@ -112,36 +99,20 @@ def check_unknown_identifier(link: Link, board: Board) -> Iterator[CheckResult]:
     yield asked(link, board, "still there", board.name, ping, (Result.OK,))
 
 
-_PREPARE: dict[str, Command] = {
-    "AXIS": (Opcode.POWER, (0,)),
-    "FOCUS": (Opcode.FOCUS_FREE, ()),
-}
-_REFUSED: dict[str, tuple[Command, ...]] = {
-    # Off. Arguments at rest: a board that does not look at its state does not move either.
-    "AXIS": (
-        (Opcode.SET_RATE, (0,)),
-        (Opcode.SET_CLASS, (SpeedClass.FINE, 0)),
-        (Opcode.TRACK_RATE, (0,)),
-        (Opcode.OPEN_LOOP, (0,)),
-        (Opcode.NUDGE, (0,)),
-    ),
-    # The shaft is free: nothing may be stepped.
-    "FOCUS": ((Opcode.FOCUS_STEP, (0,)), (Opcode.FOCUS_REFERENCE, ())),
-}
-_AFTERWARDS: dict[str, Opcode] = {"FOCUS": Opcode.FOCUS_HOLD}
 _LOSES_ORIGIN = {"FOCUS"}
 """Freed, the board no longer knows where it is: only with --motion."""
 
 
 def check_states(link: Link, board: Board) -> Iterator[CheckResult]:
     """What `board` says to commands it cannot carry out now."""
-    if board.family not in _PREPARE or (board.family in _LOSES_ORIGIN and not link.settings.motion):
+    family = FAMILIES.get(board.family, NOTHING)
+    if board.family in _LOSES_ORIGIN and not link.settings.motion:
         return
-    opcode, arguments = _PREPARE[board.family]
-    link.ask(board.device, opcode, *arguments)
-    for each, values in _REFUSED[board.family]:
+    for opcode, arguments in family.before:
+        link.ask(board.device, opcode, *arguments)
+    for each, values in family.refused:
         data = pack_command(board.device, each, *values)
-        subject = f"{board.name} {each.name} after {opcode.name}"
+        subject = f"{board.name} {each.name} after {family.before[0][0].name}"
         yield asked(link, board, "wrong state", subject, data, (Result.NOT_ALLOWED,))
-    if board.family in _AFTERWARDS:
-        link.ask(board.device, _AFTERWARDS[board.family])
+    for opcode, arguments in family.after:
+        link.ask(board.device, opcode, *arguments)

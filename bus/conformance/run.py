@@ -8,7 +8,8 @@ import can
 
 from bus.conformance.boards import Board, board_of
 from bus.conformance.canopen import check_canopen
-from bus.conformance.commands import Command, check_answers, check_commands
+from bus.conformance.commands import check_answers, check_commands
+from bus.conformance.families import FAMILIES, NOTHING, Command
 from bus.conformance.flood import check_flood
 from bus.conformance.limits import check_limits
 from bus.conformance.link import Link
@@ -23,10 +24,6 @@ if TYPE_CHECKING:
     from cantools.database import Database
 
 
-_HALT: dict[str, tuple[Command, ...]] = {
-    "AXIS": ((Opcode.STOP, ()), (Opcode.POWER, (0,))),
-    "FOCUS": ((Opcode.FOCUS_HOLD, ()),),
-}
 _STOP = "_STOP"
 """What an opcode that stops a declared board is called at its end."""
 _TIMES = 2
@@ -67,7 +64,7 @@ def halt(link: Link, boards: Sequence[Board]) -> None:
     broken: can.CanError | None = None
     for _ in range(_TIMES):
         for board in boards:
-            for opcode, arguments in _HALT.get(board.family) or declared_halt(board):
+            for opcode, arguments in FAMILIES.get(board.family, NOTHING).halt or declared_halt(board):
                 data = pack_command(board.device, opcode, *arguments)
                 try:
                     link.send(COMMAND_BASE + board.device, data)
