@@ -3,6 +3,7 @@
 from collections.abc import Awaitable, Callable, Iterator, Sequence
 from contextlib import contextmanager
 from html import escape
+from pathlib import Path
 from typing import Any
 
 from nicegui import ui
@@ -26,28 +27,7 @@ PAGES = (
 )
 _COOKIE = "schmidt-day"
 """A browser keeps its mode from page to page."""
-_TOGGLE = f"""event => {{
-  const day = document.body.classList.toggle('day');
-  document.cookie = '{_COOKIE}=' + Number(day) + '; path=/; SameSite=Strict';
-  emit(day);
-}}"""
-_SPACE = """<script>
-for (const kind of ['keydown', 'keyup']) window.addEventListener(kind, event => {
-  const at = event.target;
-  const typing = ['INPUT', 'TEXTAREA'].includes(at.tagName) && !at.readOnly && at.type !== 'checkbox';
-  if (event.key !== ' ' || !event.isTrusted || typing) return;
-  event.preventDefault();
-  event.stopImmediatePropagation();
-  if (document.activeElement) document.activeElement.blur();
-  document.dispatchEvent(new KeyboardEvent(kind, {key: ' ', code: 'Space', repeat: event.repeat}));
-}, true);
-</script>"""
-"""The space bar is the stop wherever the focus is but in a text. A focused button would swallow the key and
-be clicked by it instead, and the telescope sent on."""
-
-_BEEP = """(() => { const sound = new AudioContext(), tone = sound.createOscillator();
-tone.frequency.value = 880; tone.connect(sound.destination); tone.start();
-tone.stop(sound.currentTime + 0.4); })()"""
+_SCRIPT = Path(__file__).with_name("shell.html").read_text(encoding="utf-8")
 
 
 class Shell:
@@ -131,7 +111,7 @@ class Shell:
             self.day = bool(event.args)
             self._show_mode()  # what the server knows of the page must agree with it; the plots follow
 
-        button("Night / day").on("click", follow, js_handler=_TOGGLE)
+        button("Night / day").on("click", follow, js_handler="() => emit(toggleDay())")
 
     def _show_mode(self) -> None:
         ui.query("body").classes(add="day" if self.day else None, remove=None if self.day else "day")
@@ -140,7 +120,7 @@ class Shell:
     def page(self, path: str, title: str) -> Iterator[None]:
         """The frame of a page; its boxes go inside."""
         ui.add_css(CSS)
-        ui.add_body_html(_SPACE)
+        ui.add_body_html(_SCRIPT)
         ui.colors(primary="#ff6a5a")
         self._show_mode()
         ui.page_title(f"{title} – Schmidt telescope")
@@ -200,7 +180,7 @@ class Shell:
                 lines.set_content(text)
             new = sum(not alarm.acknowledged for alarm in standing)
             if new > heard[0] and sound.value:
-                ui.run_javascript(_BEEP)
+                ui.run_javascript("beep()")
             heard[0] = new
 
     def _stop_button(self) -> None:
