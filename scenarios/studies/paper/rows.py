@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from datetime import date
+from pathlib import Path
 from statistics import median
 from typing import Any
 
@@ -128,17 +129,7 @@ def _short(value: float, unit: str = "1") -> str:
     return "none" if value != value else f"{value:.3g}" + ("" if unit == "1" else f" {unit}")
 
 
-_HEAD = """# The paper's experiments
-
-    {command}
-
-The command repeats E1 to E10 and five more sentences of the paper on the emulated boards. Made on {day}.
-Plants: {plants}. Each row is measured at {starts} starts, and is met when every limit holds at every start.
-
-**{met} of {rows} rows are met** together, by one drive and one controller. Median and worst are those of the
-figure that is missed by most, or met by least. [Row by row](../reference/paper.md) says what each row is held
-to, and why not all can be met.
-"""
+_HEAD = Path(__file__).with_name("rows.md").read_text("utf-8")
 
 
 def _line(row: Row) -> str:

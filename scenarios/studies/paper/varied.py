@@ -1,6 +1,7 @@
 """The rows with one number of the drive off, at both preloads: which of them stand."""
 
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import Final
 
 from plant.model import get, with_value
@@ -40,14 +41,7 @@ def variations(plants: Plants, percent: float) -> dict[str, Plants]:
     }
 
 
-_HEAD = """## One number of the drive off
-
-    {command}
-
-Each of J, K, R, Tc and Ts is off by {percent:g} %, one at a time, at both preloads; the controller stays.
-Measured from {starts} starts. A dot: every limit holds at every start.
-E7 and E8 hold the drive that is there against what is printed, so they are to find a number that is off.
-"""
+_HEAD = Path(__file__).with_name("varied.md").read_text("utf-8")
 
 
 def markdown(found: Mapping[str, Sequence[Row]], command: str, percent: float) -> str:
