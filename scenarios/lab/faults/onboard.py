@@ -202,10 +202,7 @@ class Drift:
             self._queue.at(t_ns + 2 * self._board.period_ns, self._timed)
 
     def _pull(self, t_ns: int, ppm: float) -> None:
-        try:
-            self._board.oscillator.pull(t_ns, ppm)
-        except ValueError as error:
-            raise ValueError(str(error)) from None
+        self._board.oscillator.pull(t_ns, ppm)
         self._board.timer.retime()
 
     def clear(self, t_ns: int) -> None:
