@@ -70,8 +70,7 @@ def unwrapped(steps: int, near_arcsec: float) -> float:
 def auxiliary(
     link: HidLink, axis: str, steps: int | None, latched_s: float, rate_arcsec_s: float
 ) -> Auxiliary | None:
-    """The last ENCODER frame of an axis, at the moment `latched_s` of the on-shaft reading `steps`; None:
-    there is none."""
+    """The last ENCODER frame of an axis, carried to `latched_s` of the on-shaft reading `steps`, if any."""
     data = link.measurements.get(BOARDS[axis])
     if data is None or steps is None:
         return None

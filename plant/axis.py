@@ -39,9 +39,7 @@ class AxisPort:
         self.current: Callable[[int, int], float] = self._current_now
 
     def drive(self, t_ns: int, duty_a: float, duty_b: float) -> None:
-        """Set the duty cycles, 0..1 each, from `t_ns` on; within a grid step they count for the rest of
-        it.
-        """
+        """Set the duty cycles, 0..1 each, from `t_ns` on; in a grid step they count for the rest of it."""
         if not (0.0 <= duty_a <= 1.0 and 0.0 <= duty_b <= 1.0):
             raise ValueError(f"duty cycles must lie within 0..1, not {duty_a}, {duty_b}")
         grid = self._grid

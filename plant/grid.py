@@ -15,9 +15,7 @@ Sink = Callable[[str, NDArray[np.float64]], None]
 
 
 class Grid:
-    """A world (plant/world.py), advanced when somebody looks; deterministic, whoever looks and how
-    often.
-    """
+    """A world (plant/world.py), advanced when somebody looks; deterministic, whoever looks and how often."""
 
     def __init__(self, world: NDArray[np.float64], grid_ns: int) -> None:
         self.world = world
@@ -31,9 +29,7 @@ class Grid:
         self._drained = [0] * len(AXES)
 
     def advance(self, t_ns: int) -> None:
-        """Bring both axes to the last grid point at or before `t_ns`; going back is no error and does
-        nothing.
-        """
+        """Bring both axes to the last grid point up to `t_ns`; going back is no error and does nothing."""
         if t_ns < self.next_ns:
             return
         now, grid = self.now_ns, self.grid_ns

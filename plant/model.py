@@ -112,9 +112,7 @@ def _inside(part: Any) -> dict[str, Any]:
 
 
 def numbers(model: PlantModel) -> dict[str, Number]:
-    """Return every number of the model by path, such as `axes.ra.friction.coulomb` or
-    `axes.ra.effects.0.amplitude`.
-    """
+    """Return every number by path, such as `axes.ra.friction.coulomb` or `axes.ra.effects.0.amplitude`."""
     return dict(_walk(model, ""))
 
 

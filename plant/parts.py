@@ -54,9 +54,7 @@ class Environment:
 
 @dataclass(frozen=True)
 class Controller:
-    """The axis board's numbers that were fitted together with the plant; gains in PWM steps per count in 5
-    ms.
-    """
+    """The axis board's numbers, fitted together with the plant; gains in PWM steps per count in 5 ms."""
 
     kp: Number = field(metadata=bounds("steps/count", 0.0, 100.0))
     ki: Number = field(metadata=bounds("steps/count", 0.0, 100.0))

@@ -1,6 +1,4 @@
-"""From YAML nodes to the parts of a plant model, with errors that name file, line, field and the nearest
-word.
-"""
+"""From YAML nodes to the parts of a plant model; errors name file, line, field and the nearest word."""
 
 import dataclasses
 import math

@@ -52,9 +52,7 @@ UNITS: dict[str, tuple[str, float]] = {
 
 
 def factor(unit: str, base: str) -> float:
-    """Return what a number in `unit` is multiplied with to be in `base`; KeyError when that makes no
-    sense.
-    """
+    """Return what makes a number in `unit` one in `base`; KeyError when that makes no sense."""
     its_base, scale = UNITS[unit]
     if its_base != UNITS[base][0]:
         raise KeyError(unit)

@@ -85,8 +85,7 @@ def read_text(path: Path, limit: int = MAX_BYTES) -> str:
 
 
 def check_yaml(text: str) -> None:
-    """Raise TextError for YAML that is broken, nested too deeply, names too many values by aliases or a key
-    twice."""
+    """Raise TextError for YAML that is broken, nested too deeply, has too many aliases or a key twice."""
     loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     try:
         _check_events(yaml.parse(text, Loader=loader))

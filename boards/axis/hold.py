@@ -56,8 +56,7 @@ class Blend:
         self._begun = False
 
     def step(self, absolute_q18: int, velocity: int, creeping: bool) -> int:
-        """Position, Q18 counts. Fast motion takes the absolute encoder as it is: the roller's ratio is not
-        exact."""
+        """Position, Q18 counts. Fast motion takes the absolute encoder's: the roller's ratio is not exact."""
         if not self._begun or not creeping:
             self._begun = True
             self._position_q18 = absolute_q18

@@ -8,11 +8,9 @@ from boards.core.widths import INT64_TOP
 from bus.protocol import AxisMode, PositionFlag
 
 _REACTION_TICKS: Final = 30
-"""Time in which the velocity loop begins to follow the braking set point, 150 ms. ASSUMPTION: its settling
-time."""
+"""Until the velocity loop follows the braking set point, 150 ms. ASSUMPTION: its settling time."""
 _COUNTS_TOP: Final = INT64_TOP >> (UNIT_SHIFT - 16)
-"""Q16 counts whose Q18 still fits 64 bits; only the slightest acceleration with the greatest speed gets
-there."""
+"""Q16 counts whose Q18 still fits 64 bits; only the least acceleration with the greatest speed gets there."""
 _LOW, _HIGH = int(PositionFlag.LIMIT_LOW), int(PositionFlag.LIMIT_HIGH)
 
 

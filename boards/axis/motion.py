@@ -26,8 +26,7 @@ _BAD_POSITION: Final = int(PositionFlag.ALARM | PositionFlag.CRC_ERROR)
 """Position flags that make a reading worthless: alarm, CRC error."""
 _ENDS: Final = int(PositionFlag.LIMIT_LOW | PositionFlag.LIMIT_HIGH)
 POINTING: Final = (AxisMode.MOVE, AxisMode.TRACK)
-"""Modes with the position loop closed. A finished move without tracking rate stays in MOVE and holds its
-target."""
+"""Modes with the position loop closed. A finished move without a rate stays in MOVE and holds its target."""
 
 
 class Motion:
@@ -111,8 +110,7 @@ class Motion:
         self.selected = 0
 
     def open_loop(self) -> None:
-        """The effort is commanded: the set point follows the axis, so that closing the loop again is
-        bumpless."""
+        """The effort is commanded: the set point follows the axis, so closing the loop again is bumpless."""
         self.mode = AxisMode.OPEN_LOOP
         self.setpoint = self._follow
         self.rate = 0

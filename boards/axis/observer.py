@@ -36,8 +36,7 @@ RAMP_Q16: Final = rate_q16(3.0) // TICKS_PER_S
 """Change of the rate in a tick: five seconds to the tracking rate. ASSUMPTION."""
 TRIM_SHIFT: Final = 4
 TRIM_Q16: Final = rate_q16(4.0)
-"""The position loop's correction, made for a PI, is a sixteenth here, and no more than 4 arcsec/s.
-ASSUMPTION."""
+"""The position loop's correction, made for a PI, is a sixteenth here, 4 arcsec/s at most. ASSUMPTION."""
 OWED_Q16: Final = rate_q16(20.0 * TICKS_PER_S)
 """Angle owed, 20 arcsec, at which the axis is not held. The PI stops it, and all begins anew. ASSUMPTION."""
 _ONE: Final = 1 << EFFORT_SHIFT

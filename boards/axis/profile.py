@@ -15,8 +15,7 @@ from boards.core.widths import INT64_TOP, saturate
 UNITS_PER_STEP: Final = 55_125
 UNIT_SHIFT: Final = 18
 _SPEED_TOP: Final = isqrt(INT64_TOP)
-"""Q18 counts per tick, 11585 counts: fastest relative speed whose square fits. Twice the fastest rate is
-less."""
+"""Q18 counts per tick, 11585 counts: fastest relative speed whose square fits; twice the rate is less."""
 
 
 class Profile:
@@ -36,8 +35,7 @@ class Profile:
         self.top = 0
 
     def take_over(self, position: int, velocity: int) -> None:
-        """Start from a measured position and the velocity in force; the target is where braking to `rate`
-        ends."""
+        """Start from a measured position and the velocity in force; braking to `rate` ends at the target."""
         relative = saturate(velocity - self.rate, _SPEED_TOP)
         stop = relative * abs(relative) // (2 * self.acceleration)
         self.speed = relative

@@ -45,8 +45,7 @@ class RemoteTachometer:
         self._rate_q8 += ((delta << _RATE_SHIFT) - self._rate_q8) >> 2
 
     def sample(self, now_ns: int) -> int:
-        """Counts since the last sample, 10 ms ago: the difference of two carried counts; 0 while there is
-        nothing to go by."""
+        """Counts since the last sample, 10 ms ago: two carried counts' difference; 0: nothing to go by."""
         age = now_ns - self._latch_ns
         if age > MISSING_NS:
             self._last = None

@@ -54,8 +54,7 @@ _NO_DATA: Final = 0x08000024
 _INCOMPATIBLE: Final = 0x06040043
 _UNSTORED: Final = 0x08000020
 _NO_SUBINDEX: Final = 0x06090011
-"""Abort codes: value out of range; no data; incompatible parameter; cannot be stored; no such sub-index (CiA
-301, table 22)."""
+"""CiA 301, table 22: value out of range, no data, incompatible parameter, not stored, no such sub-index."""
 _SAVE: Final = int.from_bytes(b"save", "little")
 _LOAD: Final = int.from_bytes(b"load", "little")
 """What 0x1010 and 0x1011 take (CiA 301, 7.5.2.13 and 7.5.2.14)."""
@@ -165,8 +164,7 @@ class Voice(canopen.Network):
         return sent is None or self._send(sent, ready_ns)
 
     def send_message(self, can_id: int, data: Any, remote: bool = False) -> None:
-        """What the package has to say; waits for a transmit buffer. STOPPED leaves the heartbeat (CiA 301,
-        table 39)."""
+        """What the package says, once a buffer is free. STOPPED leaves the heartbeat (CiA 301, table 39)."""
         stopped = self.node.nmt.state == "STOPPED" and can_id & _BASES != HEARTBEAT_BASE
         if self.board.on and not stopped:
             self._waiting.append(Frame(can_id, bytes(data), remote=remote))

@@ -220,8 +220,7 @@ class Board:
             self.cpu.lines[CAN_LINE].request(t_ns)
 
     def transmit(self, identifier: int, data: bytes, ready_ns: int) -> None:
-        """Load a frame into a transmit buffer at `ready_ns`; a full controller costs the frame and is
-        counted."""
+        """Load a frame into a transmit buffer at `ready_ns`; a full controller loses it and is counted."""
         if not self.send(Frame(identifier, data), ready_ns):
             self.drop()
 

@@ -27,8 +27,7 @@ Handler = Callable[[int, bytes], Answer]
 
 
 def answer(device_type: int, table: Mapping[int, Handler], t_ns: int, data: bytes) -> tuple[int, Answer]:
-    """Check and run one command; returns its opcode (0 when the frame is too short to have one) and the
-    reply."""
+    """Check and run one command; returns its opcode (0: the frame is too short to have one) and the reply."""
     opcode = data[1] if len(data) > 1 else 0
     if len(data) != FRAME_BYTES:
         return opcode, Answer(Result.WRONG_LENGTH)
@@ -68,8 +67,7 @@ def commands(methods: Mapping[Opcode, Callable[..., Answer | None]]) -> dict[int
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """One row: number on the wire, name, bounds (inclusive, integers in the unit the name says),
-    accessors."""
+    """One row: number on the wire, name, bounds (inclusive, integers in the name's unit), accessors."""
 
     number: int
     name: str
@@ -107,8 +105,7 @@ class ParameterTable:
         )
 
     def set(self, number: int, value: int) -> Answer:
-        """Change it when it exists and the value is inside its bounds; the reply carries the value in
-        force."""
+        """Change it if it exists and the value is inside its bounds; the reply has the value in force."""
         row = self._rows.get(number)
         if row is None:
             return Answer(Result.OUT_OF_RANGE, number, value)

@@ -14,8 +14,7 @@ from boards.core.place import Place
 from bus.time import Oscillator
 
 _BLOCK: Final = 64
-"""Fires worked out at a time. Within a block the rate is constant: 10 ppm/h of drift is below 1e-6 ns in
-0.64 s."""
+"""Fires worked out at a time. The rate is constant in a block: 10 ppm/h is below 1e-6 ns in 0.64 s."""
 
 
 class Timer:
@@ -80,8 +79,7 @@ class Timer:
 
 @mypyc_attr(allow_interpreted_subclasses=True)
 class PeriodicBoard(Board):
-    """Subclasses write `routine(t_ns)`, whose first statement is `end = self.enter(t_ns)` followed by a
-    return when 0."""
+    """Subclasses write `routine(t_ns)`: first `end = self.enter(t_ns)`, and a return when that is 0."""
 
     def __init__(self, place: Place, fcy_hz: int, table: tuple[Source, ...], period_ns: int) -> None:
         super().__init__(place, fcy_hz, table)
@@ -104,8 +102,7 @@ class PeriodicBoard(Board):
         self.queue.at(first, self._routine)
 
     def enter(self, t_ns: int) -> int:
-        """Account for the routine that starts at `t_ns` and arm the next one; returns its end, 0 when the
-        board is off."""
+        """Account for the routine that starts at `t_ns`, arm the next one; returns its end, 0: board off."""
         if not self.on:
             return 0
         cpu = self.cpu

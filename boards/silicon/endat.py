@@ -14,8 +14,7 @@ _INVERT = 0x1F
 
 
 def crc5(bits: int, count: int) -> int:
-    """CRC of the `count` lowest bits of `bits`, taken lowest first. The published vectors hold it to
-    account."""
+    """CRC of the `count` lowest bits of `bits`, taken lowest first. Published vectors hold it to account."""
     crc = _INVERT
     for k in range(count):
         top = (crc >> 4) ^ (bits >> k & 1)
@@ -48,8 +47,7 @@ second."""
 
 
 class EndatEncoder:
-    """The RCN 829's end. pin: (t_ns) -> position, any int; wraps to 29 bits. alarm: the encoder reports an
-    error."""
+    """The RCN 829's end. pin: (t_ns) -> position, any int; wraps at 29 bits. alarm: it reports an error."""
 
     def __init__(self, pin: Callable[[int], int]) -> None:
         self.pin = pin

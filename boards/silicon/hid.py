@@ -1,5 +1,4 @@
-"""USB full-speed HID endpoint pair of the PIC18F4550: 64-byte reports, polled by the host once a
-millisecond."""
+"""USB full-speed HID endpoint pair of the PIC18F4550: 64-byte reports, polled by the host every 1 ms."""
 
 from collections.abc import Callable
 from typing import Final
@@ -23,8 +22,7 @@ class HidEndpoint:
         self.ready: Callable[[], bool] = _always
 
     def write(self, t_ns: int, report: bytes) -> None:
-        """The PC hands over an output report at `t_ns` (the present). Raises ValueError unless it has 64
-        bytes."""
+        """The PC hands over an output report at `t_ns` (now). Raises ValueError unless it has 64 bytes."""
         if len(report) != REPORT_BYTES:
             raise ValueError(f"HID report has {len(report)} bytes, the endpoint takes {REPORT_BYTES}")
         self.from_host(t_ns, report)

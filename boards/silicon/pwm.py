@@ -35,8 +35,7 @@ class MotorPwm:
         self.spreading = False
 
     def write(self, t_ns: int, pdc_a: int, pdc_b: int) -> None:
-        """Write both duty registers at `t_ns`: they count from the next period on. Negative values are a
-        bug."""
+        """Write both duty registers at `t_ns`: they count from the next period. Negative values are a bug."""
         if pdc_a == self.pdc_a and pdc_b == self.pdc_b and not self.spreading:
             return
         self.spreading = False

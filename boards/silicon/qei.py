@@ -11,8 +11,7 @@ _MASK: Final = 0xFFFF
 
 
 class Qei:
-    """pin: the encoder, (t_ns) -> counts after quadrature, any int. A stuck sensor is another callable put
-    here."""
+    """pin: the encoder, (t_ns) -> counts after quadrature, any int. A stuck sensor is another callable."""
 
     def __init__(self, pin: Callable[[int], int]) -> None:
         self.pin = pin

@@ -1,5 +1,4 @@
-"""Half stepping of a bipolar motor by a dual H-bridge: eight states of two coils (KM062, paper section
-3.2)."""
+"""Half stepping of a bipolar motor by a dual H-bridge: eight states of two coils (KM062, paper, 3.2)."""
 
 from collections.abc import Callable
 

@@ -1,5 +1,4 @@
-"""A frame bit by bit, as ISO 11898-1 writes it: slow and plain, the reference for the tables in
-`length.py`."""
+"""A frame bit by bit, as ISO 11898-1 writes it: slow and plain, the reference for the tables of `length`."""
 
 from typing import Final
 

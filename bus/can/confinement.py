@@ -12,8 +12,7 @@ RECOVERY_RUN_BITS: Final = 11
 SUSPEND_BITS: Final = 8
 """A passive node waits this long after its own frame before it may send again."""
 _REC_AFTER_PASSIVE_OK: Final = 127
-"""A good reception takes a passive REC back to 119..127; the standard leaves the choice (ASSUMPTION: 127).
-"""
+"""A good reception takes a passive REC back to 119..127; the standard leaves which (ASSUMPTION: 127)."""
 _REC_MAX: Final = 255
 """REC registers are 8 bits wide and do not wrap (MCP2515 register 1Dh)."""
 
@@ -42,8 +41,7 @@ def send_failed(port: Port, *, acknowledge: bool) -> bool:
 
 
 def receive_failed(ports: Iterable[Port], first: Port | None = None) -> None:
-    """Receivers saw an error; `first` was alone in seeing it and then sees the others' flags after its
-    own."""
+    """Receivers saw an error; `first` alone saw it, and then sees the others' flags after its own."""
     for port in ports:
         if port.listen_only:
             continue

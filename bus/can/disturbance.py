@@ -132,8 +132,7 @@ def _tail(wire: list[int], start: int, crc_good: bool) -> Verdict | None:
 
 
 def first_difference(one: list[int], other: list[int]) -> tuple[int, bool] | None:
-    """Where two senders' bits part: (index, whether `one` sent the recessive bit); None when they never
-    do."""
+    """Where two senders' bits part: (index, whether `one` sent the recessive bit); None: they never do."""
     for index, (a, b) in enumerate(zip(one, other, strict=False)):
         if a != b:
             return index, a == 1

@@ -16,8 +16,7 @@ from bus.can.frame import MAX_STANDARD, Frame, check
 
 _STATES: Final = 9
 _START: Final = 0
-"""State 0 is never reached by a bit. State = 1 + 4 * last + (run - 1), run 1..4, gives 1..8. 0 is
-"nothing yet"."""
+"""State 0, "nothing yet", is never reached by a bit. 1 + 4 * last + (run - 1), run 1..4, gives 1..8."""
 
 
 def _step(state: int, bit: int) -> tuple[int, int]:

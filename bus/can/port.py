@@ -102,8 +102,7 @@ class Port:
 
     @property
     def on_receive(self) -> Receive | None:
-        """Called as `(t_ns, frame)` at the end of every good frame from another node that passes the
-        filters."""
+        """Called as `(t_ns, frame)` at the end of each good frame of another node that passes the filters."""
         return self._on_receive
 
     @on_receive.setter
@@ -160,8 +159,7 @@ class Port:
         return self._wire._withdraw(self, frame)
 
     def accept(self, filters: Sequence[tuple[int, int]] | None) -> None:
-        """Let through identifiers with `identifier & mask == code & mask` for any (mask, code); None:
-        everything."""
+        """Let through identifiers with `identifier & mask == code & mask` for any (mask, code); None: all."""
         self._filters = None if filters is None else tuple((mask, code & mask) for mask, code in filters)
         self._wire._forget_routes()
 

@@ -51,8 +51,7 @@ def sample(levels: list[int], sent_ns: float, timing: BitTiming) -> list[int]:
 
 
 def error_ns(levels: list[int], sent_ns: float, timing: BitTiming) -> float | None:
-    """Time from start of frame at which a receiver with `timing` has seen an error; None: it takes the
-    frame."""
+    """Time from start of frame at which a receiver with `timing` sees an error; None: it takes the frame."""
     taken = sample(levels, sent_ns, timing)
     first = taken.index(0) if 0 in taken else len(taken)
     verdict = receive(taken[first:])

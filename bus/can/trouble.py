@@ -87,8 +87,7 @@ class Trouble:
         ]
 
     def decide(self, sof_ns: int) -> None:
-        """Arbitration and outcome of the frame that starts at `sof_ns`, with everything that can befall
-        it."""
+        """Arbitration and outcome of the frame that starts at `sof_ns`, with all that can befall it."""
         wire = self._wire
         waiting = [Offer(*entry) for entry in wire._waiting]
         ready = [
@@ -134,8 +133,7 @@ class Trouble:
                 port.watcher.lost(t_ns)
 
     def _collide(self, one: Offer, other: Offer, sof_ns: int) -> Offer:
-        """Two nodes send one identifier: whoever sends the first recessive bit that differs has a bit
-        error."""
+        """Two nodes send one identifier: the first recessive bit that differs is its sender's bit error."""
         parted = first_difference(wire_bits(one.frame), wire_bits(other.frame))
         if parted is None:
             self._twins.append(other)
@@ -207,8 +205,7 @@ class Trouble:
         first: Port | None = None,
         also: Port | None = None,
     ) -> None:
-        """An error frame ends the frame that started at `sof_ns`; it stays in its buffer and is sent
-        again."""
+        """An error frame ends the frame that began at `sof_ns`; it stays in its buffer and is sent again."""
         wire = self._wire
         # Seen by one node only, the flag is answered by the others' flags once six equal bits have gone by.
         flag_bits = ERROR_FLAG_BITS * (2 if first is not None else 1)

@@ -84,8 +84,7 @@ class Wire:
         self._taps.remove(call)
 
     def disturb(self, call: Disturb | None) -> None:
-        """Ask `call(t_sof_ns, frame, sender)` at the start of every frame for a bit to invert; None:
-        quiet again."""
+        """Ask `call(t_sof_ns, frame, sender)` at the start of each frame for a bit to invert; None: quiet."""
         self._trouble.disturb = call
         self._trouble.check()
 
@@ -100,8 +99,7 @@ class Wire:
 
     @property
     def load(self) -> float:
-        """Share of the time so far in which the bus carried frames (intermission counted) or error
-        frames, 0..1."""
+        """Share of the time so far in which the bus carried frames (and intermission) or error frames."""
         return self.bits * self.bit_ns / self.queue.now_ns if self.queue.now_ns else 0.0
 
     @property

@@ -1,5 +1,4 @@
-"""The answer to every command: exactly one, from the right board, naming the opcode, with a result that
-fits."""
+"""The answer to every command: exactly one, from the right board, with its opcode and a result that fits."""
 
 from collections.abc import Iterator, Sequence
 

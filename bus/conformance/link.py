@@ -111,8 +111,7 @@ class Link:
         self.took_s.setdefault(device, []).append((self.now() - self._sent_s, opcode))
 
     def replies(self, device: int, opcode: int | None) -> Answers:
-        """Answers of `device` to `opcode` (None: to anything): the first within reply_s, then any within
-        quiet_s."""
+        """Answers of `device` to `opcode` (None: any): the first within reply_s, then any within quiet_s."""
         found = Answers()
         end = self.now() + self.settings.reply_s
         while (reply := self.reply(device, end - self.now())) is not None:

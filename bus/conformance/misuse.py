@@ -75,8 +75,7 @@ def _fits(opcode: Opcode, arguments: tuple[int, ...]) -> bool:
 
 
 def check_unknown_identifier(link: Link, board: Board) -> Iterator[CheckResult]:
-    """Frames that are not for `board`, though their data would be: no answer, and it is still there
-    afterwards."""
+    """Frames that are not for `board`, though their data would be: no answer, and it is still there then."""
     command = COMMAND_BASE + board.device
     sends = [(f"identifier {number:#05x}", number, False, False) for number in _UNKNOWN_IDENTIFIERS]
     sends += [

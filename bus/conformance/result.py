@@ -19,8 +19,7 @@ class Level(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CheckResult:
-    """One check of one subject (a frame or a command); duration_s is the time the check took on the
-    bus's clock."""
+    """One check of one subject (a frame or a command); duration_s: the time it took on the bus's clock."""
 
     check: str
     subject: str

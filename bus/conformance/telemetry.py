@@ -19,8 +19,7 @@ _INTERVALS = 2
 
 
 def check_telemetry(link: Link, dbc: "Database", boards: Sequence[Board]) -> Iterator[CheckResult]:
-    """Listen once, then judge every periodic frame of `boards` in the DBC, and every frame that is not
-    in it."""
+    """Listen once, then judge each periodic frame of `boards` in the DBC, and each that is not in it."""
     heard: dict[int, list[can.Message]] = defaultdict(list)
     odd: set[str] = set()
     seconds = link.settings.listen_s / link.settings.speed

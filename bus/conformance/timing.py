@@ -14,8 +14,7 @@ from bus.protocol import State
 _FRAME_S = 135e-6
 """Eight data bytes at 1 Mbit/s with every stuff bit, and the intermission (Davis et al. 2007, eq. 2)."""
 _RELEASE_S = 0.5e-3
-"""What a board may add: its interrupts in front of the one that sends. ASSUMPTION, a tenth of the fastest
-loop."""
+"""Of a board: its interrupts in front of the one that sends. ASSUMPTION: a tenth of the fastest loop."""
 _MISSED = 1.5
 """Gaps longer than this many periods are a frame that was left out."""
 

@@ -77,8 +77,7 @@ class Pacer:
         return self._start_s + (t_ns - self._start_ns) / _NS_PER_S / self._speed
 
     def run(self, until_ns: int | None = None, each_slice: Callable[[], bool | None] | None = None) -> None:
-        """Run until simulated time `until_ns`, or until `each_slice()`, called before every slice, returns
-        True."""
+        """Run until simulated time `until_ns`, or until `each_slice()`, asked before each slice, is True."""
         queue = self.queue
         self._restart()
         while until_ns is None or queue.now_ns < until_ns:

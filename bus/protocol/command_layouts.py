@@ -1,5 +1,4 @@
-"""COMMAND: one layout per opcode, as a table; byte 0 is the device type, byte 1 the opcode, the rest
-below."""
+"""COMMAND: a table of one layout per opcode; byte 0 is the device type, byte 1 the opcode, the rest below."""
 
 from functools import cache
 from struct import Struct, error

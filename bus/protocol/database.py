@@ -12,8 +12,7 @@ DBC_PATH = Path(__file__).with_name("schmidt.dbc")
 
 @cache
 def database() -> "Database":
-    """The protocol as a cantools database; `database().decode_message(identifier, data)` decodes any
-    frame of a run."""
+    """The protocol as a cantools database; `decode_message(identifier, data)` decodes any frame of a run."""
     from cantools.database import Database, load_file
 
     loaded = load_file(DBC_PATH, strict=True)

@@ -9,8 +9,7 @@ _heartbeat: Final = Struct("<BBBHHB")
 
 
 class Heartbeat(NamedTuple):
-    """state: State; uptime: s, wraps after 65 536; overruns: lost interrupts, stays at 65 535; tec:
-    0..255."""
+    """state: State; uptime: s, wraps at 65 536; overruns: lost interrupts, stays at 65 535; tec: 0..255."""
 
     device: int
     state: int
@@ -36,8 +35,7 @@ _reply: Final = Struct("<BBBBi")
 
 
 class Reply(NamedTuple):
-    """opcode: the command's (0 when it was too short to have one); result: Result; value: by opcode, see
-    schmidt.dbc."""
+    """opcode: the command's (0: too short to have one); result: Result; value: by opcode, see schmidt.dbc."""
 
     device: int
     opcode: int

@@ -74,8 +74,7 @@ tach_fields: Final = _tach.unpack
 
 
 class Tach(NamedTuple):
-    """counts: free running, 4096 per motor turn, wraps at 32 bit; delta: counts in 10 ms; flags: none
-    defined yet."""
+    """counts: free running, 4096 per motor turn, wraps at 32 bit; delta: counts in 10 ms; flags: none yet."""
 
     device: int
     flags: int

@@ -1,5 +1,4 @@
-"""Numbers of the protocol by name: device types, identifiers, opcodes, results. A test holds them to
-schmidt.dbc."""
+"""Numbers of the protocol by name: device types, identifiers, opcodes, results. They are schmidt.dbc's."""
 
 from enum import IntEnum, IntFlag
 from typing import Any, Final, Self

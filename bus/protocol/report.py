@@ -52,8 +52,7 @@ class ReportError(ValueError):
 
 
 def slot(frame: Frame) -> bytes:
-    """The eight bytes `frame` takes in a report to the PC; raises ReportError for frames outside the
-    protocol."""
+    """The eight bytes of `frame` in a report to the PC; raises ReportError for one outside the protocol."""
     identifier, data = frame.identifier, frame.data
     if len(data) != FRAME_BYTES or not 0 < data[0] < _NOT_MEASUREMENT:
         raise ReportError(f"frame {identifier:#05x} with data {data.hex(' ')} has no slot in a HID report")

@@ -67,8 +67,7 @@ class EventQueue:
     def take_out(
         self, which: Callable[[Callable[[int], None]], bool]
     ) -> list[tuple[int, Callable[[int], None]]]:
-        """Remove the events whose call `which` picks; returns (time, call) in their order. For who stops a
-        clock."""
+        """Remove events whose call `which` picks; returns (time, call) in order. For who stops a clock."""
         events = list(zip(self._before, self._calls, strict=True))
         taken = [(-before, call) for before, call in reversed(events) if which(call)]
         kept = [event for event in events if not which(event[1])]

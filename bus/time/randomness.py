@@ -6,7 +6,6 @@ import numpy as np
 
 
 def generator(seed: int, name: str) -> np.random.Generator:
-    """A generator that depends on `seed` and `name` only (SHA-256, so not on PYTHONHASHSEED or creation
-    order)."""
+    """A generator of `seed` and `name` only (SHA-256, so not of PYTHONHASHSEED or creation order)."""
     digest = sha256(f"{seed}:{name}".encode()).digest()
     return np.random.Generator(np.random.PCG64(int.from_bytes(digest, "little")))

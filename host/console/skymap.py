@@ -85,8 +85,7 @@ def _shifted(shapes: list[str]) -> str:
 def svg(
     about: Observatory, here: Observed | None, target: Observed | None, slit_deg: float | None = None
 ) -> str:
-    """North up, east to the left, as one sees it lying on one's back; the zenith in the middle. slit_deg:
-    azimuth of the dome's slit."""
+    """North up, east left, as one sees it lying on one's back; zenith in the middle. slit_deg: the dome's."""
     shapes = [
         f'<circle r="{RADIUS}" class="sky-ground"/>',
         f'<circle r="{_radius(about.horizon_rad):.1f}" class="sky-free"/>',

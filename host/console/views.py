@@ -24,8 +24,7 @@ KEPT = 25
 
 
 class Node(NamedTuple):
-    """One node of the CAN bus: error state by ISO 11898-1 and its counters; its frames' share of the last
-    second."""
+    """A node of the CAN bus: error state by ISO 11898-1, counters; its frames' share of the last second."""
 
     name: str
     powered: bool

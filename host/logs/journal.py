@@ -88,8 +88,7 @@ class AsciiLogs(Logs):
     def __init__(
         self, folder: Path, utc: Callable[[float], str], make: Callable[[Path], LineFile] | None = None
     ) -> None:
-        """utc: text for a time in s. make: opens one file, such as `RotatingFile`; None: one that
-        grows."""
+        """utc: text for a time in s. make: opens one file, such as `RotatingFile`; None: one that grows."""
         self._utc = utc
         make = make or partial(LineFile, buffer_bytes=_BUFFER_BYTES)
         self._files = {kind: make(folder / f"{name}.log") for kind, (name, _) in _FILES.items()}

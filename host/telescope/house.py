@@ -109,8 +109,7 @@ class House:
         return self._tell(DOME, DOME_BOARD, "DOME_SHUTTER", int(opened))
 
     def stop(self) -> Job[Reply]:
-        """Stop dome and shutter, and following; commands that still wait are given up, as a stop is not
-        queued."""
+        """Stop dome, shutter and following; commands that still wait are given up: a stop is not queued."""
         self.slaved = False
         self._client.forget(DOME_BOARD)
         return self._tell(DOME, DOME_BOARD, "DOME_STOP")

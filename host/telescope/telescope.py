@@ -96,8 +96,7 @@ class Telescope:
         self.snapshot = self._look()
 
     def emergency_stop(self) -> Job[None]:
-        """Both axes, the focus and the dome, where there is one, stop; nothing that was on its way is sent
-        after it."""
+        """Both axes, the focus and the dome, if any, stop; nothing that was on its way is sent after it."""
         self.journal.command(self.client.now_ns, "HOST", "emergency stop", "sent")
         job = self.drive.stop()
         for device in AXES.values():

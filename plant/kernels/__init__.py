@@ -1,3 +1,1 @@
-"""Compiled kernels: flat arrays in, flat arrays out; nothing here knows a file, a name or a unit other than
-SI.
-"""
+"""Compiled kernels: flat arrays in, flat arrays out; nothing here knows a file, a name or a unit but SI."""

@@ -37,9 +37,7 @@ def back_emf(speed: float, constant: float, applied: float, leads: bool, diode: 
 
 @inner
 def train(twist: float, twist_rate: float, stiffness: float, damping: float, play: float) -> float:
-    """Return the torque of a gear train on the axis, N m; teeth push but never pull, and part within the
-    play.
-    """
+    """Return the torque of a gear train on the axis, N m; teeth push, never pull, and part in the play."""
     if twist > play:
         push = stiffness * (twist - play) + damping * twist_rate
         return push if push > 0.0 else 0.0

@@ -26,9 +26,7 @@ def uniform(seed: np.uint64, count: np.uint64) -> float:
 
 @inner
 def normal(seed: float, count: float) -> float:
-    """Return a standard normal number for a seed and a count, both whole floats below 2**53 (Box and
-    Muller).
-    """
+    """Return a standard normal number of seed and count, whole floats below 2**53 (Box and Muller)."""
     base = np.uint64(seed)
     place = TWO * np.uint64(count)
     return sqrt(-2.0 * log(uniform(base, place))) * cos(2.0 * pi * uniform(base, place + ONE))

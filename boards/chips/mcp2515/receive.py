@@ -51,8 +51,7 @@ class Receiver:
         self._filters = [bytes(memory[address : address + 4]) for address in FILTER_ADDRESSES]
 
     def take(self, frame: Frame, full: int) -> tuple[int, int]:
-        """A good frame has arrived: (interrupt flags, overflow flags) it sets, (0, 0) when nobody
-        wants it."""
+        """A good frame has arrived: (interrupt flags, overflow flags) it sets, (0, 0) if nobody wants it."""
         image = image_of(frame)
         hit = self._hit(image)
         if hit is None:

@@ -54,8 +54,7 @@ _LOAD_TX_ADDRESS = (0x31, 0x36, 0x41, 0x46, 0x51, 0x56)
 
 
 class SpiPort:
-    """Shift register and instruction decoder. An instruction the chip does not have is ignored until chip
-    select rises."""
+    """Shift register and instruction decoder. An unknown instruction is ignored until chip select rises."""
 
     def __init__(self, registers: Registers) -> None:
         self.registers = registers

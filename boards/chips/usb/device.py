@@ -86,8 +86,7 @@ class HidDevice:
         self._last_frame = -INTERVAL_MS
 
     def control(self, setup: bytes) -> bytes:
-        """A control transfer by its 8 setup bytes: the data of the answer. Raises Stall for what the device
-        does not know."""
+        """A control transfer by its 8 setup bytes: the answer's data. Raises Stall for what is not known."""
         if len(setup) != 8:
             raise Stall(f"a setup packet has 8 bytes, this one {len(setup)}")
         kind, request, value, _, length = unpack("<BBHHH", setup)
