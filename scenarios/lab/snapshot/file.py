@@ -24,14 +24,21 @@ def write(whole: dict[str, Any], file: Path) -> int:
         raise SnapshotError(f"snapshot: longer than {_MOST >> 20} MB")
     body = zlib.compress(plain, 1)
     data = _HEAD + sha256(body).hexdigest().encode() + b"\n" + body
-    part = file.with_name(file.name + ".part")
+    part = file.parent / f"{file.name}.part"
     try:
+        check_place(file)
         file.parent.mkdir(parents=True, exist_ok=True)
         part.write_bytes(data)
         os.replace(part, file)
     except OSError as error:
         raise LogError(f"{file}: cannot be written: {error.strerror}") from None
     return len(data)
+
+
+def check_place(file: Path) -> None:
+    """Raise LogError where something is that a file must not replace: a folder, a pipe, a device."""
+    if file.exists() and not file.is_file():
+        raise LogError(f"{file}: cannot be written: it is no regular file")
 
 
 def read(file: Path) -> dict[str, Any]:

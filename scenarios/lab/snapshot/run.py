@@ -11,7 +11,7 @@ from typing import Any
 from bus.protocol import Device
 from scenarios.lab.session import Session
 from scenarios.lab.snapshot.code import nothing
-from scenarios.lab.snapshot.file import read, write
+from scenarios.lab.snapshot.file import check_place, read, write
 from scenarios.lab.snapshot.freeze import SnapshotError, restore, take
 
 Heard = list[tuple[str, tuple[Any, ...]]]
@@ -54,6 +54,7 @@ class Order:
         """From the start (or from a snapshot of it): what the host hears is kept."""
         if Device.GATEWAY.name not in session.network.boards:
             raise SnapshotError("snapshots of a run need a network with a gateway")
+        check_place(self.file)
         if self.at_ns < (now_ns := session.network.queue.now_ns):
             raise SnapshotError(
                 f"a snapshot at {self.at_ns * 1e-9:g} s: the run is at {now_ns * 1e-9:g} s already"

@@ -1,5 +1,6 @@
 """Whole runs: on from a snapshot, every file and the digest are those of the run that was not interrupted."""
 
+import os
 import re
 from pathlib import Path
 
@@ -112,13 +113,24 @@ def test_the_command(schmidt: Command, short: Path, tmp_path: Path) -> None:
         (["--from", "nowhere.snapshot", "--seed", "2"], "nothing else"),
         ([], "Missing argument"),
         (["short.yaml", "--snapshot-at", "1000", "--no-report"], "no snapshot"),
+        (
+            ["short.yaml", "--snapshot-at", "1", "--snapshot", "."],
+            ".: cannot be written: it is no regular file",
+        ),
+        (
+            ["short.yaml", "--snapshot-at", "1", "--snapshot", "pipe"],
+            "pipe: cannot be written: it is no regular",
+        ),
     ],
 )
 def test_what_cannot_be_is_one_line(schmidt: Command, short: Path, words: list[str], reason: str) -> None:
+    if "pipe" in words:
+        os.mkfifo(short.parent / "pipe")
     done = schmidt("run", *words)
     assert done.returncode == 2
     assert reason in done.stderr
     assert "Traceback" not in done.stderr
+    assert "pipe" not in words or (short.parent / "pipe").is_fifo()  # nothing stands in its place
 
 
 def test_a_damaged_file_is_refused(tmp_path: Path) -> None:
