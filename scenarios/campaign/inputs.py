@@ -119,13 +119,16 @@ def _plant(path: Any, where: str, base: Document) -> Put:
     return put, str(path), number
 
 
-def _at(path: Sequence[str], read: Callable[[Any], Any]) -> Callable[[Document, Any], None]:
+def _at(path: Sequence[str], where: str, read: Callable[[Any], Any]) -> Callable[[Document, Any], None]:
     """Writes a value, as `read` makes it, at a path whose blocks need not be there."""
 
     def put(document: Document, value: Any) -> None:
         for word in path[:-1]:
             document = document.setdefault(word, {})
-        document[path[-1]] = read(value)
+        try:
+            document[path[-1]] = read(value)
+        except (TypeError, ValueError, OverflowError):
+            raise ScenarioError(f"{where}: {'.'.join(path)}: expected a number, found {value!r}") from None
 
     return put
 
@@ -161,13 +164,13 @@ def _field(path: Any, where: str, base: Document) -> Put:
 _PUTS: dict[str, Callable[[Any, str, Document], Put]] = {
     "plant": _plant,
     "parameter": lambda given, where, base: (
-        _at(("network", "nodes", given["node"], "parameters", str(given["number"])), int),
+        _at(("network", "nodes", given["node"], "parameters", str(given["number"])), where, int),
         f"{given['node']} parameter {given['number']}",
         None,
     ),
-    "seed": lambda given, where, base: (_at(("seed",), int), "seed", None),
+    "seed": lambda given, where, base: (_at(("seed",), where, int), "seed", None),
     "start": lambda axis, where, base: (
-        _at(("start", axis), lambda value: f"{float(value)!r} deg"),
+        _at(("start", axis), where, lambda value: f"{float(value)!r} deg"),
         f"start, {axis.replace('_', ' ')}",
         None,
     ),

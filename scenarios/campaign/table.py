@@ -32,7 +32,7 @@ class Journal:
                 raise ScenarioError(f"{what}; --resume goes on with them, or give another --out")
         folder.mkdir(parents=True, exist_ok=True)
         self._file = self.path.open("a", encoding="utf-8")
-        if self._file.tell() and resume:
+        if self._file.tell():
             self._file.write("\n")  # ends a line that was torn; an empty one is none
 
     def add(self, row: Row) -> None:
@@ -61,7 +61,7 @@ def rows(path: Path) -> Iterator[Row]:
         for line in file:
             try:
                 found = json.loads(line)
-            except ValueError:
+            except (ValueError, RecursionError):
                 continue
             if (
                 isinstance(found, dict)

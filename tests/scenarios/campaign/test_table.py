@@ -33,10 +33,19 @@ def test_a_torn_line_and_a_lost_run_are_made_again(tmp_path: Path) -> None:
     assert dict(zip(found["key"], found["value"], strict=True)) == {"a": 1.0, "b": 2.0, "c": 3.0}
 
 
+def test_a_torn_line_swallows_no_run_of_a_new_campaign(tmp_path: Path) -> None:
+    (tmp_path / table.JOURNAL).write_text('{"key": "c", "ind')
+    journal = table.Journal(tmp_path, resume=False)
+    journal.add(row("a", value=1.0))
+    journal.close()
+    assert [each["key"] for each in table.rows(tmp_path / table.JOURNAL)] == ["a"]
+
+
 @pytest.mark.parametrize(
     "line",
     [
         b"{}",
+        b"[" * 100_000,
         b'{"key": 3}',
         b'{"key": "d", "index": "e"}',
         b'{"key": "d", "index": true, "failure": ""}',
