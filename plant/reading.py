@@ -100,6 +100,8 @@ class Reader:
             texts = f"{value:g} {given}", f"{low:g} to {high:g} {unit}"
             said, limits = (text.removesuffix(" 1") for text in texts)
             raise self.fail(fields["value"], path, f"{said} is outside {limits}")
+        if given == "bit" and value % 1:
+            raise self.fail(fields["value"], path, f"{value:g} bit is no whole number")
         source = self.scalar(fields["source"], path + ".source")
         if not source.strip():
             raise self.fail(fields["source"], path + ".source", "is empty: say where the number comes from")

@@ -60,10 +60,18 @@ class Cell:
 
 
 def board_error(board: type, name: str, t_ns: int, error: BaseException, what: str = "") -> BoardError:
-    """What is said of an error in the code of `board`, of which `name` is one. what: said instead of the
-    error."""
+    """What is said of an error in the code of `board`, of which `name` is one; an interruption goes on.
+
+    what: said instead of the error.
+    """
+    if isinstance(error, KeyboardInterrupt):
+        raise error
     file = getattr(sys.modules.get(board.__module__), "__file__", board.__module__)
-    reason = what or f"{type(error).__name__}: {' '.join(str(error).split())}".rstrip(": ")
+    try:
+        text = " ".join(str(error).split())
+    except Exception:  # its text is the author's, too
+        text = ""
+    reason = what or f"{type(error).__name__}: {text}".rstrip(": ")
     return BoardError(f"{file}: board {name} fails at {t_ns * 1e-9:.6g} s: {reason}")
 
 
@@ -107,6 +115,7 @@ class DeclaredBoard(PeriodicBoard):
         if _SECOND_NS % tick_ns or any(codec.period_ns % tick_ns for codec in self.codecs):
             raise ValueError(f"{self.KIND.dbc}: periods must be multiples of the shortest, which divides 1 s")
         super().__init__(place, self.FCY_HZ, self.TABLE, tick_ns)
+        self._signals = {signal.name for message in own for signal in message.signals}
         self.pins = dict(pins)
         self.packets = PacketLine(place, self.clip)
         self.uart = self.packets.uart
@@ -147,7 +156,7 @@ class DeclaredBoard(PeriodicBoard):
     def _serve(self, t_ns: int) -> None:
         try:  # a command's method is the author's, and so is its answer
             super()._serve(t_ns)
-        except (Exception, SystemExit, GeneratorExit) as error:
+        except BaseException as error:
             raise board_error(type(self), self.name, t_ns, error) from None
 
     def routine(self, t_ns: int) -> None:
@@ -167,13 +176,13 @@ class DeclaredBoard(PeriodicBoard):
         """As any board's; raises BoardError where `state` says nothing that one can hold."""
         try:
             super().heartbeat(t_ns)
-        except (Exception, SystemExit) as error:
+        except BaseException as error:
             raise board_error(type(self), self.name, t_ns, error, f"state cannot be sent: {error}") from None
 
     def _ping(self, t_ns: int) -> Answer:
         try:
             return super()._ping(t_ns)
-        except (Exception, SystemExit) as error:
+        except BaseException as error:
             raise board_error(type(self), self.name, t_ns, error, f"health cannot be sent: {error}") from None
 
     def _frames(self, t_ns: int) -> list[tuple[int, bytes]]:
@@ -182,12 +191,14 @@ class DeclaredBoard(PeriodicBoard):
         values: Any = {}
         try:
             values = self.measure(t_ns)
+            if unknown := values.keys() - self._signals:
+                raise LookupError(f"measure returned {min(map(str, unknown))}, which no frame has")
             return [
                 (codec.identifier, codec.pack(values, self.clip))
                 for codec in self.codecs
                 if not passed_ns % codec.period_ns
             ]
-        except (Exception, SystemExit, GeneratorExit) as error:
+        except BaseException as error:
             raise board_error(type(self), self.name, t_ns, error, _unusable(values)) from None
 
 

@@ -220,10 +220,13 @@ class _Wiring:
         given = self.config.node(device.name).inputs
         try:
             pins = pins_of(board, device.name, self.site, given)
-            return board(self.of(device), pins)
+            made = board(self.of(device), pins)
+            if not isinstance(made, board):
+                raise TypeError(f"its class makes a {type(made).__name__}")
+            return made
         except KindError as error:
             raise ValueError(str(error)) from None
-        except (Exception, SystemExit) as error:
+        except BaseException as error:
             raise board_error(board, device.name, 0, error) from None
 
 

@@ -5,6 +5,7 @@ from bisect import bisect_right
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from hashlib import sha256
 from importlib.util import module_from_spec, spec_from_file_location
+from math import isfinite
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -13,7 +14,7 @@ import yaml
 
 from boards import __file__ as package
 from boards.auxiliary.firmware import AuxiliaryBoard
-from boards.core import Board
+from boards.core import Board, Source
 from boards.core.declared import DeclaredBoard, Pin
 from boards.dome.firmware import DomeBoard
 from boards.power.firmware import PowerBoard
@@ -64,6 +65,9 @@ class Supply:
 BOARDS: tuple[type[DeclaredBoard], ...] = (AuxiliaryBoard, DomeBoard, WeatherBoard, PowerBoard)
 """Those that come along."""
 _COME_ALONG = Path(package).parent
+_WORDS = range(-(1 << 31), 1 << 31)
+_NUMBERS = range(1, 256)
+"""What SET_PARAMETER carries (docs/reference/protocol.md)."""
 MODULE = "schmidt_board_"
 """How the modules of users' boards are called, with a digest of where the file is."""
 
@@ -158,11 +162,35 @@ def load_board(file: Path, beside: Iterable[type[DeclaredBoard]] = ()) -> type[D
         check_kind(board.KIND, [*KINDS, *(each.KIND for each in beside)])
         messages_of(board.KIND)
         methods = [opcode.name.lower() for opcode in arguments_of(board.KIND)]
+        unfit = _unfit(board)
     except (AttributeError, TypeError, LookupError) as error:
         raise KindError(f"{file}: {board.__name__}.KIND cannot be used: {error}") from None
+    if unfit:
+        raise KindError(f"{file}: {board.__name__}.{unfit}")
     if unwritten := [name for name in methods if not hasattr(board, name)]:
         raise KindError(f"{file}: {board.__name__} has no method {unwritten[0]}, as its opcode is called")
     return board
+
+
+def _unfit(board: type[DeclaredBoard]) -> str:
+    """Which of its rows cannot be, and why; "" when all can."""
+    second = range(board.FCY_HZ)
+    for source in board.TABLE:
+        cycles = (source.latency_cycles, source.cost_cycles) if isinstance(source, Source) else (None,)
+        if not all(each in second for each in cycles):
+            return f"TABLE: {source}: it takes rows of Source, whole cycles below FCY_HZ"
+    numbers = [row.number for row in board.KIND.parameters]
+    for row in board.KIND.parameters:
+        whole = all(each in _WORDS for each in (row.low, row.default, row.high))
+        if not whole or not row.low <= row.default <= row.high:
+            return f"KIND: parameter {row.name}: low, high and, between them, the default are 32-bit numbers"
+        if row.number not in _NUMBERS or numbers.count(row.number) > 1:
+            return f"KIND: parameter {row.name}: its number is 1 to 255, and no other's"
+    names = [pin.name for pin in board.PINS]
+    for pin in board.PINS:
+        if not isfinite(pin.default) or names.count(pin.name) > 1:
+            return f"PINS: {pin.name}: its default is a finite number, its name no other's"
+    return ""
 
 
 def firmware_file(folder: Path, name: str) -> Path:

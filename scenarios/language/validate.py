@@ -1,6 +1,7 @@
 """A document against the published schema; errors name file, line, field and the nearest valid word."""
 
 import json
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from functools import cache
@@ -157,6 +158,8 @@ def _found(value: object) -> str:
         return "a block of fields"
     if isinstance(value, bool):
         return str(value).lower()
+    if isinstance(value, str) and re.fullmatch(r"[-+]?[0-9.]+e[-+]?[0-9]+", value):
+        return f"the text {value!r}: a number with an exponent has a point and a sign, as 1.0e+3"
     return f"a list of {len(value)}" if isinstance(value, list) else repr(value)
 
 

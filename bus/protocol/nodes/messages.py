@@ -27,6 +27,8 @@ def _file(path: Path) -> Any:
     from cantools.database import load_file
     from cantools.database.errors import Error
 
+    if Path(path).exists() and not Path(path).is_file():  # a pipe or a device may never end
+        raise KindError(f"{path}: it is no regular file")
     try:
         return load_file(path, strict=True)
     except OSError as error:
@@ -75,6 +77,7 @@ def messages_of(kind: Kind) -> list[Any]:
 
 def _moved(kind: Kind, name: str, number: int, message: Any, own_command: Any | None) -> Any:
     from cantools.database.can import Message
+    from cantools.database.errors import Error
 
     base = message.frame_id
     signals = deepcopy(message.signals)
@@ -87,16 +90,19 @@ def _moved(kind: Kind, name: str, number: int, message: Any, own_command: Any | 
             _choices(signal, {1: "PING", 2: "GET_PARAMETER", 3: "SET_PARAMETER"} | opcodes)
         elif signal.name.endswith("Parameter_Number"):
             _choices(signal, {row.number: row.name.upper() for row in kind.parameters})
-    return Message(
-        base + number,
-        f"{name}_{message.name}",
-        8,
-        [_device(name, number), *(_kind_byte() if base == SUMMARY_BASE else ()), *signals],
-        comment=message.comment,
-        senders=["GATEWAY" if base == COMMAND_BASE else name],
-        cycle_time=message.cycle_time,
-        strict=True,
-    )
+    try:
+        return Message(
+            base + number,
+            f"{name}_{message.name}",
+            8,
+            [_device(name, number), *(_kind_byte() if base == SUMMARY_BASE else ()), *signals],
+            comment=message.comment,
+            senders=["GATEWAY" if base == COMMAND_BASE else name],
+            cycle_time=message.cycle_time,
+            strict=True,
+        )
+    except Error as error:
+        raise KindError(f"{kind.dbc}: {error}") from None
 
 
 def opcode_names(command: Any | None) -> dict[int, str]:

@@ -28,11 +28,13 @@ BA_DEF_DEF_ "GenMsgCycleTime" 0;
 BA_ "GenMsgCycleTime" BO_ 512 500;
 VAL_ 128 Opcode 80 "HEAT" ;
 """
+KIND_END = '.with_name("bad.dbc"))'
 BOARD = """import sys
 from pathlib import Path
 from boards.core import Source
-from boards.core.declared import DeclaredBoard
+from boards.core.declared import DeclaredBoard, Pin
 from bus.protocol.nodes import Kind
+from bus.protocol.nodes.kind import ParameterRow
 
 
 class Bad(DeclaredBoard):
@@ -81,6 +83,9 @@ def made(file: Path) -> Network:
         ("sys.exit(3)", "SystemExit: 3"),
         ("sys.exit()", "SystemExit"),
         ("raise GeneratorExit", "GeneratorExit"),
+        ("raise BaseException('out')", "BaseException: out"),
+        ("raise type('Mute', (Exception,), {'__str__': lambda self: 1 / 0})", "Mute"),
+        ("return {'Temprature': 1.0}", "LookupError: measure returned Temprature, which no frame has"),
     ],
 )
 def test_a_board_that_fails_is_named_with_file_and_time(measure: str, words: str, tmp_path: Path) -> None:
@@ -129,6 +134,16 @@ def test_it_is_one_line_of_the_command(tmp_path: Path, schmidt: Command) -> None
          "board BAD fails at 0 s: SystemExit: 5"),
         ("    def measure", "    class PART:\n        def __init__(self, more): pass\n\n    def measure",
          "board BAD fails at 0 s: TypeError"),
+        ("    def measure", "    def __new__(cls, *given):\n        return 5\n\n    def measure",
+         "board BAD fails at 0 s: TypeError: its class makes a int"),
+        ("cost_cycles=900", "cost_cycles=10**30", "bad.py: Bad.TABLE: Source"),
+        ("cost_cycles=900", "cost_cycles=float('nan')", "bad.py: Bad.TABLE: Source"),
+        ("latency_cycles=12, cost", "latency_cycles=-12, cost", "bad.py: Bad.TABLE: Source"),
+        (KIND_END, f"{KIND_END[:-1]}, (ParameterRow(1, 'a', 0, 5, 9),))", "Bad.KIND: parameter a: low"),
+        (KIND_END, f"{KIND_END[:-1]}, (ParameterRow(999, 'a', 0, 5, 1),))", "parameter a: its number is 1"),
+        ("    def measure", "    PINS = (Pin('a', default=float('nan')),)\n\n    def measure", "Bad.PINS: a"),
+        ("    def measure", "    PINS = (Pin('a'), Pin('a'))\n\n    def measure", "Bad.PINS: a"),
+        (KIND_END, ".parent)", "it is no regular file"),
     ],
 )  # fmt: skip
 def test_a_board_that_cannot_be_made_is_named(old: str, new: str, words: str, tmp_path: Path) -> None:
@@ -136,4 +151,14 @@ def test_a_board_that_cannot_be_made_is_named(old: str, new: str, words: str, tm
     board = file.with_name("bad.py")
     board.write_text(board.read_text().replace(old, new))
     with pytest.raises(ValueError, match=words.replace(".", r"\.")):
+        made(file)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"), [("16|8@1+", "0|8@1+"), ("m80 :", "m1 :"), ("SG_ Temperature", "SG_ Device")]
+)
+def test_frames_whose_signals_overlap_are_refused(old: str, new: str, tmp_path: Path) -> None:
+    file = write(tmp_path)
+    file.with_name("bad.dbc").write_text(DBC.replace(old, new))
+    with pytest.raises(ValueError, match=r"bad\.dbc: The signals \w+ and \w+ are overlapping"):
         made(file)

@@ -56,6 +56,7 @@ REFUSED: tuple[tuple[str, str], ...] = (
     ("lists in lists", BASE + "description: " + "[" * 5000 + "]" * 5000 + "\n"),
     ("maps in maps", BASE + "description: " + "{a: " * 3000 + "}" * 3000),
     ("blocks in blocks", "".join(" " * i + "a:\n" for i in range(3000))),
+    ("half a bit", overriding("axes.ra.encoders.absolute: 12.5")),
     ("grid of zero", overriding("numerics.grid: 0")),
     ("grid of nearly zero", overriding("numerics.grid: 1.0e-300")),
     ("grid nan", overriding("numerics.grid: .nan")),
