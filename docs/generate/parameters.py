@@ -9,9 +9,13 @@ _HEAD = """# Parameters of the boards
 GET_PARAMETER and SET_PARAMETER of [the protocol](protocol.md) read and write them by number. A scenario sets
 them with the step `set_parameter`, or from the start under `network: nodes: NAME: parameters`. Values are
 whole numbers, in the unit that the name ends in: `q8`, `q12` and `q16` are binary fractions with as many
-bits. The value is the one after power-up.
+bits. The value is the one a board is made with.
 
-Parameters 12 to 68 of an axis board are off after power-up; that is the paper's firmware.
+Parameters 12 to 68 of an axis board are off in it; that is the paper's firmware.
+
+The paper does not say what a loss of supply does to parameters. ASSUMPTION: boards of the networks `lab` and
+`serial` keep what was written last, as in the EEPROM that their microcontrollers have. The boards that only
+`final` has, and boards of your own, return to the value in the table.
 """
 
 

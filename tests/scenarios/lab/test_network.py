@@ -17,6 +17,7 @@ from plant.model import DEFAULT, load
 from plant.plant import Plant
 from scenarios.lab.network import Network, build
 from scenarios.lab.networks import NetworkConfig, NodeConfig, config_from
+from scenarios.lab.wiring import network as wired
 
 CENTRE = 1 << 28
 STEP_ARCSEC = ARCSEC_PER_TURN / (1 << 29)
@@ -206,3 +207,18 @@ def test_settings_reach_the_boards() -> None:
 def test_bad_settings_are_named(config: NetworkConfig, text: str) -> None:
     with pytest.raises(ValueError, match=text):
         Night(config=config)
+
+
+@pytest.mark.parametrize(("name", "number", "kept"), [("AXIS_RA", 1, True), ("WEATHER_MAST", 3, False)])
+def test_what_a_loss_of_supply_does_to_parameters_is_what_their_page_says(
+    name: str, number: int, kept: bool
+) -> None:
+    network = wired(network_name="final")
+    board = network.boards[name]
+    made = board.parameters.get(number).value
+    assert board.parameters.set(number, made + 1).result is Result.OK
+    board.power_off(0)
+    board.power_on(0)
+    network.run_until(1_000_000_000)
+    assert board.on and board.boots == 2
+    assert board.parameters.get(number).value == made + kept
