@@ -29,8 +29,8 @@ PWM_ROUTINE: Final = Source("pwm", priority=7, latency_cycles=5, cost_cycles=20)
 """Only with the spread duty: per channel load, add, load, add with carry, store (10 cycles for two), flag,
 shadow registers, return. Every PWM period, 1.7 % of the processor's time."""
 HARMONIC_CYCLES: Final = 120
-"""Per line of the compensation: its three long words, count and branch (6 + 1 + 3), 32 x 29 bit product for
-the phase (45), table with two interpolations (30), two products and sums (35)."""
+"""Per line of the compensation: its three long words, count and branch (6 + 1 + 3). The phase is a product of
+32 x 29 bits (45). A table with two interpolations (30), two products and sums (35)."""
 FRICTION_CYCLES: Final = 60
 """The friction model: two 32-bit products, sums."""
 SHARE_CYCLES: Final = 75

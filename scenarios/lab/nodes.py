@@ -67,7 +67,7 @@ BOARDS: tuple[type[DeclaredBoard], ...] = (AuxiliaryBoard, DomeBoard, WeatherBoa
 _COME_ALONG = Path(package).parent
 _WORDS = range(-(1 << 31), 1 << 31)
 _NUMBERS = range(1, 256)
-"""What SET_PARAMETER carries (docs/reference/protocol.md)."""
+"""Bounds of a number that SET_PARAMETER carries (docs/reference/protocol.md)."""
 MODULE = "schmidt_board_"
 """How the modules of users' boards are called, with a digest of where the file is."""
 
