@@ -28,7 +28,7 @@ def plots(shell: Shell) -> None:
     for title, names, pick, least in PANELS:
         with box(title):
             rms = ui.label().classes("small") if pick is PANELS[0][2] else None
-            chart = ui.echart(options(names, "night")).classes("w-full").style("height: 11rem")
+            chart = ui.echart(options(names, "night")).classes("w-full plot")
             chart.props(f'role="img" aria-label="{title} over the last two minutes"')
             shell.each(_refresher(shell, chart, names, pick, least))
             if rms is not None:

@@ -15,7 +15,7 @@ REPORTS = "/reports"
 
 def calibrate(shell: Shell, runs: RecordedRuns) -> None:
     """The page."""
-    with shell.page("/calibrate", "Calibrate"), ui.element("div").classes("boxes"):
+    with shell.page("/calibrate", "Calibrate"), ui.element("div").classes("boxes filled"):
         with box("Record"):
             ui.label("Both axes, as their boards send it over RS232, one file a run.").classes("small")
             state = ui.label().classes("mid").props('role="status"')

@@ -13,7 +13,7 @@ from host.console.shell import OLD, Shell, box, button, stale, table
 
 def dome(shell: Shell) -> None:
     """The page."""
-    with shell.page("/dome", "Dome and weather"), ui.element("div").classes("boxes"):
+    with shell.page("/dome", "Dome and weather"), ui.element("div").classes("boxes filled chart"):
         _dome(shell)
         _weather(shell)
         _power(shell)

@@ -12,7 +12,7 @@ from host.telescope.state import AXES
 
 def maintenance(shell: Shell) -> None:
     """The page."""
-    with shell.page("/maintenance", "Maintenance"), ui.element("div").classes("boxes"):
+    with shell.page("/maintenance", "Maintenance"), ui.element("div").classes("boxes filled"):
         _motors(shell)
         _gears(shell)
         _encoders(shell)

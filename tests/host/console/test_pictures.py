@@ -35,6 +35,12 @@ LIGHT = 0.8
 """Median brightness of a page by day. ASSUMPTION."""
 FILLED = 0.4
 """Share of a desk's first screen that is covered by cards. ASSUMPTION."""
+REACHED = 0.9
+"""Share of a desk's height down to which the cards of FILLED_PAGES reach. ASSUMPTION."""
+FILLED_PAGES = ("dome", "maintenance", "calibrate")
+"""Their few cards grow with the screen."""
+_REACH = """Math.max(...[...document.querySelectorAll(".box")].map(
+  at => at.getBoundingClientRect().bottom)) / innerHeight"""
 _WIDE = """[...document.querySelectorAll('.box, .q-btn, .q-btn__content')].filter(
   at => at.scrollWidth > at.clientWidth + 1 || !at.matches('.box') && at.scrollHeight > at.clientHeight + 1)
 .map(at => (at.querySelector('h2') || at).textContent)
@@ -173,6 +179,9 @@ def photographed(page: Any, name: str) -> list[str]:
             found += [f"{name}, {size}: {each} is out of view" for each in page.evaluate(_AWAY)]
             if size == "desk" and (covered := page.evaluate(_COVERED)) < FILLED:
                 found.append(f"{name}: cards cover {covered:.0%} of a desk")
+            filled = size == "desk" and name.endswith(FILLED_PAGES)
+            if filled and (reach := page.evaluate(_REACH)) < REACHED:
+                found.append(f"{name}: cards end at {reach:.0%} of a desk's height")
             SHOTS.mkdir(parents=True, exist_ok=True)
             file = SHOTS / f"{name}-{mode}-{size}.png"
             page.screenshot(path=str(file), full_page=True)
