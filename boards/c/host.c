@@ -14,7 +14,7 @@
 static int64_t firmware_ask(void *host, int64_t what, int64_t a, int64_t b, void *data, int length);
 
 /* The routine that this thread is in. inside: firmware's own code, not Python's that it called. */
-static __thread struct {
+struct routine {
     sigjmp_buf jump;
     void *host;
     char *stack;
@@ -22,19 +22,22 @@ static __thread struct {
     int64_t duties;  /* of write_pwm(), not yet told: with the next call, or at the end */
     int32_t encoder; /* its counter, handed in with the timer's routine; -1: has to be asked for */
     volatile sig_atomic_t inside;
-    volatile unsigned long steps;
-} here;
-static __thread unsigned long seen;
-static __thread int ready;
+    volatile unsigned long steps, seen;
+};
+/* Of a thread that has run a routine. A handler must not allocate: its storage is there from the thread's start. */
+static __thread struct routine *current __attribute__((tls_model("initial-exec")));
+#define here (*current)
 static volatile unsigned long steps;
 static struct sigaction before[NSIG];
 
 static void caught(int signal) {
-    if (signal == SIGVTALRM && (!here.inside || here.steps != seen)) {
-        seen = here.steps;
-        if (!here.inside && before[signal].sa_handler != SIG_DFL && before[signal].sa_handler != SIG_IGN)
+    int inside = current && here.inside;
+    if (signal == SIGVTALRM && (!inside || here.steps != here.seen)) {
+        if (inside)
+            here.seen = here.steps;
+        if (!inside && before[signal].sa_handler != SIG_DFL && before[signal].sa_handler != SIG_IGN)
             before[signal].sa_handler(signal); /* another firmware's library watches, too */
-    } else if (here.inside) {
+    } else if (inside) {
         siglongjmp(here.jump, signal);
     } else {
         sigaction(signal, &before[signal], NULL); /* not ours: it happens again, without us */
@@ -48,7 +51,7 @@ static void prepare(void) {
     stack_t stack = {.ss_size = 65536};
     struct sigaction action = {.sa_handler = caught, .sa_flags = SA_NODEFER | SA_ONSTACK | SA_RESTART};
     struct itimerval every = {{1, 0}, {1, 0}}; /* s of this process' own CPU time: hung after two */
-    ready = 1;
+    current = calloc(1, sizeof *current);
     if (sigaltstack(NULL, &stack) == 0 && (stack.ss_flags & SS_DISABLE)) {
         stack = (stack_t){.ss_sp = malloc(65536), .ss_size = 65536};
         sigaltstack(&stack, NULL);
@@ -64,11 +67,12 @@ static void prepare(void) {
 /* Runs a routine; arguments and result are those of Memory in library.py. block: its handle, then the memory. */
 static int64_t enter(void **block, int routine, int64_t now_ns, int64_t output_ns, uint32_t number, int size,
                      const uint8_t *data, const struct frame *frame) {
-    __typeof__(here) outer = here;
+    struct routine outer;
     struct board *memory = (struct board *)(block + 1);
     int64_t ended;
-    if (!ready)
+    if (!current)
         prepare();
+    outer = here;
     here.host = *block;
     here.stack = (char *)&ended;
     here.now_ns = now_ns;
