@@ -26,6 +26,14 @@ class Number(click.FloatRange):
         return number
 
 
+def _word(_ctx: click.Context, _param: click.Parameter, value: str | None) -> str | None:
+    if value is not None and value.split() != [value]:  # nobody could say it to a door
+        raise click.BadParameter("it is one word, without blanks")
+    return value
+
+
+WORD: dict[str, Any] = {"callback": _word}
+"""Settings of a token."""
 SPEED = Number(0.01, 1000)
 """`bus.outside.pacer` has the same bounds; not imported here, so that the command starts at once."""
 SEED = click.IntRange(0, 2**63 - 1)

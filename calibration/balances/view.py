@@ -16,6 +16,7 @@ from calibration.balances.context import direction_of, since_reversal, turning_p
 from calibration.balances.filters import Filter, by_piece, pieces, smooth
 from calibration.balances.frame import SHORT
 from calibration.balances.noise import position_noise
+from calibration.errors import CalibrationInputError
 from calibration.inputs.declaration import Response, Rig
 from calibration.inputs.run import Run, rows_per_reading, step_of
 from calibration.inputs.thresholds import GAP
@@ -154,6 +155,8 @@ def view_of(records: list[Run], rig: Rig, response: Response) -> View:
     """All records on one grid; the filter from the rig file or from the position's noise."""
     period = float(np.median([r.period_s for r in records]))
     parts = [_regular(r, period) for r in records]
+    if max(len(p["t"]) for p in parts) < 3:
+        raise CalibrationInputError(records[0].path, "no three rows follow each other in time")
     file = np.concatenate([np.full(len(p["t"]), k) for k, p in enumerate(parts)]).astype(np.int64)
     columns = {k: np.concatenate([p[k] for p in parts]) for k in parts[0]}
     t, ok, gap = columns.pop("t"), columns.pop("ok") > 0, columns.pop("gap") > 0

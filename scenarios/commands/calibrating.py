@@ -1,6 +1,7 @@
 """Commands on measured logs: calibrate, rig."""
 
 import sys
+import warnings
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -45,20 +46,22 @@ def calibrate(
         sys.exit(calibrate_stars(logs[0], terms, out))
     if terms is not None:
         raise click.UsageError("--terms is for a pointing run (docs/guides/pointing-model.md)")
+    from numpy.linalg import LinAlgError
+
     from calibration.command import calibrate as command
     from scenarios.progress import stages
 
     size = megabytes(logs)
     usual_s = {name: begin_s + per_mb_s * size for name, (begin_s, per_mb_s) in USUAL.items()}
-    with stages("calibrating", usual_s) as enter:
-        status = command(
-            list(logs),
-            rig,
-            list(hold_out),
-            out,
-            plant,
-            on_step=lambda step: enter(STEPS.get(step, SEARCHING)),
-        )
+    with warnings.catch_warnings(), stages("calibrating", usual_s) as enter:
+        warnings.simplefilter("ignore", RuntimeWarning)  # NumPy's, of columns that hold nothing
+        try:
+            status = command(
+                list(logs), rig, list(hold_out), out, plant,
+                on_step=lambda step: enter(STEPS.get(step, SEARCHING)),
+            )  # fmt: skip
+        except LinAlgError:
+            raise ValueError(f"{logs[0]}: no fit converges; see scale and gain of the rig file") from None
     sys.exit(status)
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from scenarios.options import NETWORK, PATH, SECONDS, SEED, SPEED, argument, option
+from scenarios.options import NETWORK, PATH, SECONDS, SEED, SPEED, WORD, argument, option
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -18,7 +18,7 @@ class DoorOptions:
     asked: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     runs: Path = option("Folder of the runs recorded on the console.", type=PATH, default=Path("out/console"))
     logs: Path | None = option("Folder of the host's four logs and of its guide log.", type=PATH)
-    token: str | None = option("Word that other machines must know (default: made up, printed).")
+    token: str | None = option("Word that other machines must know (default: made up, printed).", **WORD)
     network: str | None = option(**NETWORK)
     duration: float | None = option("End after this many seconds.", type=SECONDS)
 

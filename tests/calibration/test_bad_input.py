@@ -98,6 +98,8 @@ def test_a_folder_a_missing_file_and_a_file_given_twice_are_refused(tmp_path: Pa
         ("  position: {column: x, unit: turn, wrap: 10}\n", "", "'position' is missing"),
         ("gain: 2.0", "gain: 0", "erases the response"),
         ("unit: V}", "unit: V, scale: 0}", "erases the column"),
+        ("gain: 2.0", "gain: 1.0e+300", "greater than the maximum"),
+        ("unit: V}", "unit: V, delay_s: 1.0e+9}", "greater than the maximum of 3600"),
         ("gain: 2.0", "divide_by: supply", "'supply' is not among the columns"),
         ("stages:", "runs: {by: column}\nstages:", "needs runs.column"),
         ("stages:", "estimate: []\nstages:", "estimate"),
@@ -115,6 +117,14 @@ def test_every_mistake_in_a_rig_file_gets_one_line(tmp_path: Path, old: str, new
     with pytest.raises(CalibrationInputError, match=says) as caught:
         calibrate([tmp_path / "d.csv"], tmp_path / "rig.yaml", [], tmp_path / "out", plots=False)
     assert "\n" not in str(caught.value)
+
+
+def test_a_clock_that_runs_backwards_is_one_line(tmp_path: Path) -> None:
+    (tmp_path / "rig.yaml").write_text(RIG)
+    rows = "".join(f"{-0.1 * k:.1f},{k % 7},{k % 5}\n" for k in range(400))
+    (tmp_path / "d.csv").write_text("t,x,u\n" + rows)
+    with pytest.raises(CalibrationInputError, match=r"d\.csv: no three rows follow each other in time"):
+        calibrate([tmp_path / "d.csv"], tmp_path / "rig.yaml", [], tmp_path / "out", plots=False)
 
 
 @pytest.mark.parametrize(

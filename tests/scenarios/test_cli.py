@@ -27,6 +27,8 @@ from tests.scenarios.conftest import ROOT, SHORT, Command
         (["objective", "--only", "TRACK"], "the rows are: the paper's firmware; "),
         (["objective", "--shift", "nan"], "nan is no number"),
         (["objective", "--seconds", "nan"], "nan is no number"),
+        (["serve", "--lx200", "4030", "--token", ""], "it is one word"),
+        (["serve", "--lx200", "4030", "--token", "a b"], "it is one word"),
     ],
 )
 def test_unusable_input_is_one_line_and_status_2(
