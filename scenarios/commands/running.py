@@ -86,6 +86,8 @@ def run(
     from scenarios.lab.snapshot.run import begun as read_run
     from scenarios.run import run as runner
 
+    if snapshot is not None and snapshot_at is None:
+        raise click.UsageError("--snapshot FILE needs --snapshot-at SECONDS")
     changes, whole = Changes(**given), None
     if begun is not None:
         if scenario or compensation or changes != Changes():

@@ -112,6 +112,7 @@ def test_the_command(schmidt: Command, short: Path, tmp_path: Path) -> None:
         (["--from", "short.yaml"], "no snapshot"),
         (["--from", "nowhere.snapshot", "--seed", "2"], "nothing else"),
         ([], "Missing argument"),
+        (["short.yaml", "--snapshot", "s"], "needs --snapshot-at"),
         (["short.yaml", "--snapshot-at", "1000", "--no-report"], "no snapshot"),
         (
             ["short.yaml", "--snapshot-at", "1", "--snapshot", "."],
