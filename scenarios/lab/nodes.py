@@ -177,14 +177,14 @@ def _unfit(board: type[DeclaredBoard]) -> str:
     second = range(board.FCY_HZ)
     for source in board.TABLE:
         cycles = (source.latency_cycles, source.cost_cycles) if isinstance(source, Source) else (None,)
-        if not all(each in second for each in cycles):
+        if not all(isinstance(each, int) and each in second for each in cycles):
             return f"TABLE: {source}: it takes rows of Source, whole cycles below FCY_HZ"
     numbers = [row.number for row in board.KIND.parameters]
     for row in board.KIND.parameters:
-        whole = all(each in _WORDS for each in (row.low, row.default, row.high))
+        whole = all(isinstance(each, int) and each in _WORDS for each in (row.low, row.default, row.high))
         if not whole or not row.low <= row.default <= row.high:
             return f"KIND: parameter {row.name}: low, high and, between them, the default are 32-bit numbers"
-        if row.number not in _NUMBERS or numbers.count(row.number) > 1:
+        if not isinstance(row.number, int) or row.number not in _NUMBERS or numbers.count(row.number) > 1:
             return f"KIND: parameter {row.name}: its number is 1 to 255, and no other's"
     names = [pin.name for pin in board.PINS]
     for pin in board.PINS:

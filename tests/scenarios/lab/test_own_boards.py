@@ -140,6 +140,8 @@ def test_it_is_one_line_of_the_command(tmp_path: Path, schmidt: Command) -> None
         ("cost_cycles=900", "cost_cycles=float('nan')", "bad.py: Bad.TABLE: Source"),
         ("latency_cycles=12, cost", "latency_cycles=-12, cost", "bad.py: Bad.TABLE: Source"),
         (KIND_END, f"{KIND_END[:-1]}, (ParameterRow(1, 'a', 0, 5, 9),))", "Bad.KIND: parameter a: low"),
+        (KIND_END, f"{KIND_END[:-1]}, (ParameterRow(1, 'a', 0, 5, 2.5),))", "Bad.KIND: parameter a: low"),
+        ("cost_cycles=900", "cost_cycles=1.5", "bad.py: Bad.TABLE: Source"),
         (KIND_END, f"{KIND_END[:-1]}, (ParameterRow(999, 'a', 0, 5, 1),))", "parameter a: its number is 1"),
         ("    def measure", "    PINS = (Pin('a', default=float('nan')),)\n\n    def measure", "Bad.PINS: a"),
         ("    def measure", "    PINS = (Pin('a'), Pin('a'))\n\n    def measure", "Bad.PINS: a"),
