@@ -37,7 +37,7 @@ NOISE = 0.01  # of the acceleration's rms, that the position's noise may leave i
 # the same where the filter leaves few rows: an inertia is then off by its square, a thousandth. ASSUMPTION
 NOISE_OF_FEW = 0.03
 FEW = 600  # rows behind the filter, that are few: half of them stands still or is held out. ASSUMPTION
-LEAST_WIDTH = 0.5  # rows, of the speed's smoothing: a central difference is as wide. arithmetic
+LEAST_WIDTH = 0.5  # rows, of the speed's smoothing: a central difference, two rows, has 0.58. arithmetic
 LEAST = 2.0  # rows: standard deviation of the filter at least, where the rig file does not say it. ASSUMPTION
 MOST = 40.0  # rows likewise at most. ASSUMPTION
 NYQUIST = 0.5  # cycles per row. by arithmetic

@@ -17,13 +17,13 @@ OF_COULOMB = "of_coulomb"
 def columns(s: Scene) -> list[Candidate]:
     """Friction, or what of it knows no speed, times exp(-time / tau) or times the temperature.
 
-    The time is on the clock that all files share, or from the start of every file. Friction falls as the
-    depth is negative.
+    The time is on the clock that all files share, where there is one, or from the start of every file.
+    Friction falls as the depth is negative.
     """
     known = s.declared.get("coulomb", 0.0) > 0 and s.declared.get("viscous", 0.0) > 0
     # all files of a rig are one session
     session = np.zeros(len(s.view.clock)) if s.pair is None else s.pair.motion.frame.session
-    clocks = [("time_constant", since_first(s.view.clock, session))]
+    clocks = [("time_constant", since_first(s.view.clock, session))] * ("start" in s.clocks)
     clocks += [("time_constant_in_run", x) for start, x in s.clocks.items() if start != "start"]
     parts = product((False, True) if known else (False,), clocks)
     out = [one for of_coulomb, clock in parts for one in _cooling(s, *clock, of_coulomb)]

@@ -69,3 +69,17 @@ def test_files_without_a_clock_have_no_time_among_them(tmp_path: Path, clock: bo
     data = answer(tmp_path, text, *tables)
     starts = [p for e in data["effects"] for p in e["parameters"] if p == "start"]
     assert bool(starts) == clock
+
+
+def test_a_warm_up_of_files_without_a_clock_begins_in_every_file(tmp_path: Path) -> None:
+    """The same friction, less from file to file: in which order they were measured, nobody says."""
+    t, x, u = motion()
+    way = np.sign(np.gradient(x, t))
+    names = []
+    for order in ((0, 1, 2, 3, 4), (3, 0, 4, 2, 1)):
+        tables = [(t, x, u + 1.5 * np.exp(-k / 1.5) * way) for k in order]
+        (tmp_path / str(order[0])).mkdir()
+        data = answer(tmp_path / str(order[0]), FORCE, *tables)
+        assert not any(p == "time_constant" for e in data["effects"] for p in e["parameters"])
+        names.append(sorted(e["name"] for e in data["effects"]))
+    assert names[0] == names[1]
