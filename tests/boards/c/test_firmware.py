@@ -303,3 +303,11 @@ def test_both_notice_wind(opcode: Opcode) -> None:
         assert duel.sides[1].state()["blowing"] == blowing
         if not compiled():
             assert duel.sides[0].state()["motion.gusts.blowing"] == bool(blowing)
+
+
+def test_the_watch_has_its_storage_before_a_signal_comes() -> None:
+    """A thread's storage that is made at its first access is made by malloc, which a signal may interrupt."""
+    module, _ = load(AXIS_C)
+    symbols = subprocess.run(["nm", "-D", module.__file__], capture_output=True, text=True, check=True).stdout
+    assert "siglongjmp" in symbols
+    assert "__tls_get_addr" not in symbols
