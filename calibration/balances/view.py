@@ -37,6 +37,7 @@ NOISE = 0.01  # of the acceleration's rms, that the position's noise may leave i
 # the same where the filter leaves few rows: an inertia is then off by its square, a thousandth. ASSUMPTION
 NOISE_OF_FEW = 0.03
 FEW = 600  # rows behind the filter, that are few: half of them stands still or is held out. ASSUMPTION
+FEWEST = 3  # rows of a second difference. definition
 LEAST_WIDTH = 0.5  # rows, of the speed's smoothing: a central difference, two rows, has 0.58. arithmetic
 LEAST = 2.0  # rows: standard deviation of the filter at least, where the rig file does not say it. ASSUMPTION
 MOST = 40.0  # rows likewise at most. ASSUMPTION
@@ -129,7 +130,7 @@ class View:
 
     def rate(self, full: Array) -> Array:
         """Central difference per second within segments."""
-        return by_piece(full, self.segment, lambda x: np.gradient(x, self.period_s), 3)
+        return by_piece(full, self.segment, lambda x: np.gradient(x, self.period_s), FEWEST)
 
     def smoothed(self, full: Array) -> Array:
         """A rate or acceleration (n,) of the position before the filter.
@@ -141,7 +142,7 @@ class View:
 
     def second(self, full: Array) -> Array:
         """Second difference per second squared within segments; 0 at their ends."""
-        return by_piece(full, self.segment, lambda x: np.pad(np.diff(x, 2), 1) / self.period_s**2, 3)
+        return by_piece(full, self.segment, lambda x: np.pad(np.diff(x, 2), 1) / self.period_s**2, FEWEST)
 
     def delayed(self, full: Array, delay_s: float) -> Array:
         """What the column would have shown, had it not been late by `delay_s`."""
@@ -155,7 +156,7 @@ def view_of(records: list[Run], rig: Rig, response: Response) -> View:
     """All records on one grid; the filter from the rig file or from the position's noise."""
     period = float(np.median([r.period_s for r in records]))
     parts = [_regular(r, period) for r in records]
-    if max(len(p["t"]) for p in parts) < 3:
+    if max(len(p["t"]) for p in parts) < FEWEST:
         raise CalibrationInputError(records[0].path, "no three rows follow each other in time")
     file = np.concatenate([np.full(len(p["t"]), k) for k, p in enumerate(parts)]).astype(np.int64)
     columns = {k: np.concatenate([p[k] for p in parts]) for k in parts[0]}
