@@ -6,7 +6,7 @@ import numpy as np
 from calibration.arrays import Array, Mask, by_median
 from calibration.inputs import thresholds as limits
 from calibration.inputs.declaration import Column, Rig
-from calibration.inputs.rows import lost_rows, repeated_rows
+from calibration.inputs.rows import lost_rows, repeated_rows, rows_without_a_stamp
 from calibration.inputs.run import Repair, Run
 from plant.units import ARCSEC_PER_TURN
 
@@ -31,6 +31,7 @@ def repair(run: Run, rig: Rig) -> None:
             _saturation(run, channel)
     repeated_rows(run, rig)
     lost_rows(run)
+    rows_without_a_stamp(run)
 
 
 def _wraps(run: Run, channel: str, where: Column) -> None:
