@@ -28,8 +28,11 @@ def lost_rows(run: Run) -> None:
 
 
 def rows_without_a_stamp(run: Run) -> None:
-    """Put rows later by those that are missing before them, where an even clock goes on as if there were none:
-    the stamps were made from the row's number. The position moves on by whole rows there; in place."""
+    """Put rows later by those that are missing before them; in place.
+
+    An even clock goes on as if there were none: it was made from the row's number. The position moves on by
+    whole rows there.
+    """
     t, travel = run.columns["t"], np.diff(run.columns["position"])
     even = np.abs(np.diff(t) / run.period_s - 1) < limits.OFF_BEAT
     if len(t) < limits.FEWEST_ROWS or even.mean() < limits.REGULAR:

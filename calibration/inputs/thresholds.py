@@ -68,7 +68,7 @@ LOST_SHARE = 0.001  # share of the rows that are missing, from which on it is re
 MOVED_ON = 0.6
 # steps of a sensor per row, from which on a row tells itself from two: a rounding is an eighth. arithmetic
 STEPS_PER_ROW = 8
-# of their mean, by which the motion of the rows before and after may differ: beyond, it turns round. ASSUMPTION
+# of their mean, by which the motion of the rows before and after may differ: else it turns round. ASSUMPTION
 LIKE_ITS_NEIGHBOUR = 0.3
 # of the places with rows missing, those with steps between whole ones: more is a motion's. ASSUMPTION
 BETWEEN = 0.25

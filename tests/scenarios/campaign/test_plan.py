@@ -187,7 +187,7 @@ def test_a_hundred_thousand_runs_are_planned_without_being_held(campaign: Any) -
         ({"field": "steps." + "9" * 5000, "is": [1]}, "no field"),
         ({"seed": True, "is": {"between": [0, 9], "levels": 1_000_000_000}}, "at most 1000"),
         ({"weather": 1, "is": [1]}, "unknown field"),
-        ({"parameter": {"node": "AXIS_RA", "number": 2}, "is": ["1e30"]}, "expected a number, found '1e30'"),
+        ({"parameter": {"node": "AXIS_RA", "number": 2}, "is": ["1e30"]}, "expected a whole number, found '1e30'"),
         ({"start": "hour_angle", "is": ["west"]}, "expected a number, found 'west'"),
         ({"parameter": {"node": "AXIS_XY", "number": 1}, "is": [1]}, "AXIS_XY"),
     ],
