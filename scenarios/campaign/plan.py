@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from scenarios.campaign import inputs
 from scenarios.campaign.inputs import FAULT, Input
-from scenarios.lab.prepare import CAMPAIGNS, located
+from scenarios.lab.prepare import CAMPAIGNS, located, prepare
 from scenarios.lab.prepare import load as load_scenario
 from scenarios.language.document import Document, ScenarioError, read
 from scenarios.language.units import parse
@@ -149,7 +149,7 @@ def load(file: Path) -> Plan:
     for each in found:  # and the ends of every input
         for value in each.ends:
             try:
-                load_scenario(Document(file, plan.document([(each, value)]), {}))
+                prepare(Document(file, plan.document([(each, value)]), {}))
             except ScenarioError as error:
                 raise ScenarioError(f"{file}: input {each.name!r}, value {value!r}: {error}") from None
     return plan
