@@ -136,8 +136,11 @@ def _far_off(x: Array, width: int) -> Mask:
     before, after = np.roll(x, width), np.roll(x, -width)
     off = np.abs(x - (before + after) / 2)
     off[:width], off[-width:] = 0.0, 0.0
-    wide = np.roll(x, width + 1) + np.roll(x, -width - 1)
-    calm, near = np.abs((before + after) / 2 - wide / 2), np.abs(after - before)
+    outer = np.roll(x, width + 1), np.roll(x, -width - 1)
+    calm = np.abs((before + after) / 2 - (outer[0] + outer[1]) / 2)
+    near = np.abs(
+        after - before - (outer[1] - outer[0]) * width / (width + 1)
+    )  # a step, and no steady motion
     finite = np.isfinite(off)
     if finite.sum() < limits.FEWEST_SAMPLES:
         return np.zeros(len(x), dtype=bool)

@@ -46,7 +46,7 @@ def load_rig(path: Path) -> Rig:
         raise CalibrationInputError(path, "is no rig file: 'rig', 'columns' and 'response' are needed")
     schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
     finite = Draft202012Validator.TYPE_CHECKER.redefine("number", _is_finite)
-    checked = extend(Draft202012Validator, type_checker=finite)(schema)
+    checked = extend(Draft202012Validator, type_checker=finite)(schema)  # type: ignore[no-untyped-call]
     errors = [_innermost(e) for e in checked.iter_errors(data)]
     if errors:  # a rule that the schema says in its own words holds for fields that are sound
         errors = [error for error in errors if not _says(error)] or errors

@@ -227,7 +227,10 @@ def test_start_angles_are_an_axis_and_the_telescope_stands_there(campaign: Any) 
     [
         ([{"plant": FRICTION, "times": {"between": [-1, 1]}}], rf"value -0.998.*{FRICTION}"),
         ([{"seed": True, "is": [1, 1.5]}], "expected a whole number, found 1.5"),
-        ([{"plant": FRICTION, "times": [1, 2]}, {"plant": FRICTION, "is": [3], "name": "b"}], "the later one"),
+        (
+            [{"plant": FRICTION, "times": [1, 2]}, {"plant": FRICTION, "is": [3], "name": "b"}],
+            "the later one",
+        ),
     ],
 )
 def test_what_no_run_could_use_is_refused_before_the_first_run(
