@@ -1,4 +1,4 @@
-"""What other joints of an arm do to this one when they move: no effect of the catalogue, and a real force."""
+"""Inertia that couples other joints of an arm to this one: no effect of the catalogue, and a real force."""
 
 import numpy as np
 
