@@ -1,6 +1,6 @@
 """Something that is added to the command behind the logged effort: a line of its own frequency."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from itertools import product
 from typing import Any
 
@@ -76,9 +76,10 @@ def lines(s: Scene, follows: Array, large_first: bool = True) -> list[Candidate]
     if repeats * length < FEWEST_REPEATS:
         most = min(most, STRONG)
     multiples: Array = np.arange(1, most + 1) * np.float64(repeats)
-    driven = np.array([_power(s, follows, f) for f in multiples])
-    follow = driven > np.array([_power(s, s.residual, f) for f in multiples])
-    avoid = multiples[follow & ~_shaken(s, driven, multiples)]
+    x = v.x[v.rows]
+    driven, left, moved = _powers(s, (follows, s.residual, x), repeats, most)
+    commanded = float(np.var(x[train])) * (SHAKEN * float(train.sum())) ** 2 / 2
+    avoid = multiples[(driven > left) & ~(_alone(driven) & (moved < commanded))]
     least = max(TURNS / sum(lengths), IN_A_FILE / length)
     want = Wanted(span=length, least=least, most=5, avoid=avoid, large_first=large_first)
     out, count = [], len(np.unique(files))
@@ -102,20 +103,15 @@ def lines(s: Scene, follows: Array, large_first: bool = True) -> list[Candidate]
     return out
 
 
-def _shaken(s: Scene, driven: Array, multiples: Array) -> NDArray[np.bool_]:
+def _alone(driven: Array) -> NDArray[np.bool_]:
     """Which multiples (k,) no repeated motion has: a disturbance shakes the drive there.
 
-    Its line in what follows the motion, `driven` (k,), stands alone among its neighbours, where the harmonics
-    of a motion fall off. Nobody commands so little of a stroke.
+    Its power in what follows the motion, `driven` (k,), stands alone among its neighbours'. The harmonics of
+    a motion fall off.
     """
     beside = np.pad(driven, NEIGHBOURS)
     around = [np.roll(beside, k)[NEIGHBOURS:-NEIGHBOURS] for k in range(-NEIGHBOURS, NEIGHBOURS + 1) if k]
-    alone = driven > ALONE * np.max(around, axis=0)
-    x, train = s.view.x[s.view.rows], s.problem.train
-    least = float(np.var(x[train])) * (SHAKEN * float(train.sum())) ** 2 / 2
-    return np.array(
-        [a and _power(s, x, f) < least for a, f in zip(alone, multiples, strict=True)], dtype=bool
-    )
+    return np.asarray(driven > ALONE * np.max(around, axis=0))
 
 
 def over_the_place(s: Scene, hertz: float) -> tuple[str, ...] | None:
@@ -206,12 +202,16 @@ def _phase(x: Array, y: Array, square: bool) -> float:
     return best
 
 
-def _power(s: Scene, y: Array, hertz: float) -> float:
-    """Of a line of `y` (n_fitted,) in the training rows, any phase in every file."""
+def _powers(s: Scene, ys: Sequence[Array], hertz: float, most: int) -> Array:
+    """(len(ys), most): powers of lines of `ys` (n_fitted,) at multiples of `hertz`, of any phase in a file."""
     p, t = s.problem, s.view.t[s.view.rows]
-    wave = np.where(p.train, y, 0.0) * np.exp(-2j * np.pi * hertz * t)
-    _, file = np.unique(p.session, return_inverse=True)
-    return float(np.sum(np.abs(np.bincount(file, wave.real) + 1j * np.bincount(file, wave.imag)) ** 2))
+    starts = np.flatnonzero(np.diff(p.session, prepend=p.session[0] - 1))
+    rows, turn = np.where(p.train, np.array(ys), 0.0), np.exp(-2j * np.pi * hertz * t)
+    out, wave = np.zeros((len(ys), most)), np.ones(len(t), dtype=complex)
+    for k in range(most):
+        wave = wave * turn
+        out[:, k] = np.sum(np.abs(np.add.reduceat(rows * wave, starts, axis=1)) ** 2, axis=1)
+    return out
 
 
 def to_plant(f: Finding, facts: Facts) -> Made:
