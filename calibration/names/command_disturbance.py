@@ -203,7 +203,7 @@ def _phase(x: Array, y: Array, square: bool) -> float:
 
 
 def _powers(s: Scene, ys: Sequence[Array], hertz: float, most: int) -> Array:
-    """(len(ys), most): powers of lines of `ys` (n_fitted,) at multiples of `hertz`, of any phase in a file."""
+    """(len(ys), most): powers of lines of `ys` (n_fitted,) at multiples of `hertz`, any phase in a file."""
     p, t = s.problem, s.view.t[s.view.rows]
     starts = np.flatnonzero(np.diff(p.session, prepend=p.session[0] - 1))
     rows, turn = np.where(p.train, np.array(ys), 0.0), np.exp(-2j * np.pi * hertz * t)
