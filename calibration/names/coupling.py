@@ -10,18 +10,19 @@ from calibration.names.name import Array, Candidate, Scene, candidate
 def coupling(s: Scene) -> list[Candidate]:
     """The inertia's off-diagonal terms, of every other joint alone and of all together.
 
-    Of two links whose axes are parallel (Craig, Introduction to Robotics, chapter 6), whichever is in front.
+    Constant ones, as of an arm that hardly bends; and those of two links whose axes are parallel, whichever is
+    in front (Craig, Introduction to Robotics, chapter 6).
     """
     joints = [name for name in JOINTS if name in s.view.columns]
     if not s.force or not s.view.dynamic:
         return []
     each = {name: _columns(s, name) for name in joints}
     sets = [[name] for name in joints] + ([joints] if len(joints) > 1 else [])
-    return [_of(s, {name: each[name] for name in some}) for some in sets]
+    return [_of(s, {name: each[name][:, :most] for name in some}) for some in sets for most in (1, None)]
 
 
 def _of(s: Scene, columns: dict[str, Array]) -> Candidate:
-    labels = [label for name in columns for label in _labels(s, name)]
+    labels = [label for name, x in columns.items() for label in _labels(s, name)[: x.shape[1]]]
     note = f"the motion of {' and '.join(columns)} comes back here: inertia that couples them"
     return candidate(UNKNOWN, s.at(np.hstack([*columns.values()])), *labels, domain="time", note=note)
 
