@@ -48,18 +48,23 @@ def _resolve_gain(findings: list[Finding]) -> list[Finding]:
 
 def _same_key(findings: list[Finding]) -> list[Finding]:
     """One finding of a name and place; its twist, which the encoders show, beside its torque."""
+    twists = {
+        f.key: f.parameters["amplitude"] for f in findings if f.channel == "K" and "amplitude" in f.parameters
+    }
     best: dict[tuple[str, str | None], Finding] = {}
     # of one late column the sensors tell most, whatever its share
     for f in sorted(findings, key=lambda f: ("SKETU".find(f.channel) * (f.domain == "clock"), -f.share)):
         single = _beside(f).single
         key = (f.name, None if single else f.domain if f.name == UNKNOWN else f.stage)
         first = best.setdefault(key, f)
-        for torque, twist in ((first, f), (f, first)):
-            if torque.channel == "T" and twist.channel == "K" and "amplitude" in twist.parameters:
-                best[key] = torque.having(kinematic=twist.parameters["amplitude"])
+        if f.channel == "T" and first.key in twists and first.channel == "K":
+            best[key] = f
         if not single and f.harmonic != first.harmonic and f.channel == first.channel:
             best[(f"{f.name} {f.harmonic}", f.stage)] = f
-    return list(best.values())
+    return [
+        f.having(kinematic=twists[f.key]) if f.channel == "T" and f.key in twists else f
+        for f in best.values()
+    ]
 
 
 def _without_traces(findings: list[Finding]) -> list[Finding]:
