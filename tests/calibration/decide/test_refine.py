@@ -119,11 +119,11 @@ def test_slopes_are_derivatives_of_what_the_coefficients_make(step: float) -> No
 
 
 def logged(
-    first: float, last: float, y: np.ndarray | None = None, base: np.ndarray | None = None, held: float = 0.0
+    first: float, last: float, y: np.ndarray | None = None, base: np.ndarray | None = None, held: bool = False
 ) -> Problem:
     """Rows every 0.05 s but for those between; `held`: those between are held out instead."""
     p = problem(A if y is None else y, base)
-    gap = (T > first) & (T < last)
+    gap = (first < T) & (last > T)
     p.held = gap if held else np.zeros(ROWS, dtype=bool)
     p.valid = np.ones(ROWS, dtype=bool) if held else ~gap
     return p
@@ -213,7 +213,7 @@ def test_declared_terms_that_move_with_a_change_take_it(
 def test_of_onsets_in_a_held_out_stretch_the_one_that_leaves_least_is_taken(true: float) -> None:
     """Nine of them, ends included, over 30 s."""
     c = onset(45.0)
-    p = logged(30.0, 60.0, 2.0 * onset(true).columns[:, 0] + 0.1 * LUCK, held=1.0)
+    p = logged(30.0, 60.0, 2.0 * onset(true).columns[:, 0] + 0.1 * LUCK, held=True)
     fit = p.fit(p.design([c]))
     moved = settled(p, p.base, c, fit)
     (at,) = moved.point
