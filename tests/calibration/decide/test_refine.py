@@ -179,7 +179,7 @@ def test_a_change_that_is_as_had_it_come_long_before_is_none(off: float, before:
     wave = off * np.sqrt(2) * np.cos(T)
 
     def shape(p: np.ndarray) -> np.ndarray:
-        return scale * (1.0 + wave * (p[0] > -1000.0))[:, None]
+        return np.asarray(scale * (1.0 + wave * (p[0] > -1000.0)))[:, None]
 
     c = replace(onset(45.0), columns=shape(np.array([45.0])), shape=shape)
     p = logged(30.0, 60.0, base=C[:, None])
