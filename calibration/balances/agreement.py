@@ -100,7 +100,10 @@ def velocity_against_position(view: View, held: Mask) -> Agreement | None:
     )
     unit = view.rig.columns["velocity"].unit
     own, spread = float(last.beta[0]), float(last.errors[0])
-    if abs(_of_the_travel(view) - 1.0) < SCALED:  # rows that repeat spoil the rates, not the way
+    # rows that repeat spoil the rates, not the way; and a rate of noise alone has no scale
+    if abs(_of_the_travel(view) - 1.0) < SCALED or noise[1] * _passed(np.gradient, sigma) > MATTERS * rms(
+        v[rows][test]
+    ):
         own = 1.0
     return Agreement("velocity", unit, delay, error, b, c, floor, late, own, spread, rms(v[rows][test]))
 

@@ -27,6 +27,9 @@ COVER = 0.02  # of its own quantile range that a held-out file may exceed the ot
 # of the others' range that the end of a file may go beyond them before another part is held out. ASSUMPTION:
 # half; loads that grow step by step are first seen at the end
 BEYOND = 0.5
+# rms, of the largest, of a principal part of the weights' columns: what shows less would have to be three
+# hundred times as heavy as what shows most. ASSUMPTION
+LEAST_SEEN = 0.003
 CHANGES = 0.01  # of its size, by which a column changes at least: else it has one value. ASSUMPTION
 # first letters of terms that a part of a file may go beyond, as the speed may
 TOLD_BY = ("gravity", "applied")
@@ -162,7 +165,19 @@ def _gravity(view: View) -> list[Term]:
     for joint in joints if len(joints) > 1 else []:
         both = [(side, of(view.columns[joint] / turn)) for side, of in sides]
         out += [(f"{name}_{side}_{joint}", x * wave) for side, wave in both for name, x in out]
+    if len(joints) > 1:
+        out = _seen_parts(np.column_stack([x for _, x in out]), view.ok)
     return [(f"gravity_{name}", view.unit, carried * x) for name, x in out]
+
+
+def _seen_parts(columns: Array, rows: Mask) -> list[tuple[str, Array]]:
+    """Principal parts of `columns` (n, k) along a motion, without those that it hardly moves.
+
+    A weight would have to be many times what the log holds before it showed in these.
+    """
+    size, parts = np.linalg.eigh(columns[rows].T @ columns[rows])
+    seen = size > LEAST_SEEN**2 * size.max()
+    return [(str(k + 1), x) for k, x in enumerate((columns @ parts[:, seen]).T[::-1])]
 
 
 def _unit_of(view: View, channel: str) -> str:

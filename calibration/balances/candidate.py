@@ -43,6 +43,7 @@ class Candidate:
     per_run: bool = False  # a pair of columns per run: the phase is every run's own
     neighbours: tuple[Candidate, ...] = ()  # lines of no stage, within the cell of this stage's order
     apart: float | None = None  # of a line that no stage has: its order, where several may be found
+    note: str = ""  # of its finding, for people
 
     @property
     def key(self) -> tuple[str, str | None, int | None, float | None]:

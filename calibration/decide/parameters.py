@@ -128,7 +128,7 @@ def finding_of(s: Selection, k: int) -> Finding:
         parameters=parameters_of(s, k),
         evidence=x.evidence,
         share=x.held.share,
-        note="; ".join(f"fits exactly as well: {_told(e)}" for e in tied),
+        note="; ".join([*([c.note] if c.note else []), *(f"fits exactly as well: {_told(e)}" for e in tied)]),
     )
 
 
@@ -136,6 +136,13 @@ def _told(x: Contender) -> str:
     """Sizes and place of an effect, for people, in its parameters' units."""
     sizes = {name: size for (name, _), size in zip(x.candidate.labels, x.fit.beta[x.at], strict=False)}
     return ", ".join(f"{name} {value:.3g}" for name, value in {**sizes, **x.candidate.place}.items())
+
+
+def _helps(s: Selection, k: int, part: slice) -> bool:
+    """Whether these columns of the chosen effect `k` take something off the rows that are held out."""
+    test = s.problem.test
+    mine = s.candidates[k].columns[test, part] @ s.sizes(k)[part]
+    return not test.any() or float(mine @ (2 * s.model.left_out(s.problem) + mine)) > 0
 
 
 def findings_of(s: Selection, k: int) -> list[Finding]:
@@ -154,7 +161,8 @@ def findings_of(s: Selection, k: int) -> list[Finding]:
         waves = [(*_wave(beta[x], cov[x, x], s.problem.blocks, unit, 0.0), _spread(cov[x, x])) for x in pair]
         # the phase is the section's that shows the line best: one that is held out shows none
         amplitude, phase, spread = max(waves, key=lambda w: w[0].value)
-        if pairs <= limits.MOST_WAVES or amplitude.value >= limits.CLEAR_Z * spread:
+        seen = pairs <= limits.MOST_WAVES or amplitude.value >= limits.CLEAR_Z * spread
+        if seen and (len(pair) > 1 or _helps(s, k, pair[0])):
             order = c.order * (h + 1) if c.order else None
             sizes = {size: amplitude, "phase": phase}
             out.append(replace(whole, harmonic=h + 1, order=order, parameters=sizes))

@@ -6,7 +6,7 @@ import numpy as np
 from calibration.arrays import Array, Mask, by_median
 from calibration.inputs import thresholds as limits
 from calibration.inputs.declaration import Column, Rig
-from calibration.inputs.rows import lost_rows, repeated_rows
+from calibration.inputs.rows import lost_rows, repeated_rows, rows_without_a_stamp
 from calibration.inputs.run import Repair, Run
 from plant.units import ARCSEC_PER_TURN
 
@@ -31,6 +31,7 @@ def repair(run: Run, rig: Rig) -> None:
             _saturation(run, channel)
     repeated_rows(run, rig)
     lost_rows(run)
+    rows_without_a_stamp(run)
 
 
 def _wraps(run: Run, channel: str, where: Column) -> None:
@@ -135,8 +136,11 @@ def _far_off(x: Array, width: int) -> Mask:
     before, after = np.roll(x, width), np.roll(x, -width)
     off = np.abs(x - (before + after) / 2)
     off[:width], off[-width:] = 0.0, 0.0
-    wide = np.roll(x, width + 1) + np.roll(x, -width - 1)
-    calm, near = np.abs((before + after) / 2 - wide / 2), np.abs(after - before)
+    outer = np.roll(x, width + 1), np.roll(x, -width - 1)
+    calm = np.abs((before + after) / 2 - (outer[0] + outer[1]) / 2)
+    near = np.abs(
+        after - before - (outer[1] - outer[0]) * width / (width + 1)
+    )  # a step, and no steady motion
     finite = np.isfinite(off)
     if finite.sum() < limits.FEWEST_SAMPLES:
         return np.zeros(len(x), dtype=bool)

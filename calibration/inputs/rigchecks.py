@@ -66,7 +66,7 @@ def _one_drive(rig: Rig, data: dict[str, Any]) -> Iterator[str]:
     used = {"time", "position", "velocity", "acceleration", "temperature", "supply", "reference", "applied"}
     used |= {*channels} | {r.divide_by for r in responses if r.divide_by}
     used |= {"effort", "force", "current"} if "position2" in channels else set()
-    used |= {"load", *JOINTS} if "gravity" in estimated else set()
+    used |= {"load", *JOINTS} if "gravity" in estimated else {*JOINTS} if "inertia" in estimated else set()
     used |= {"effort"} if "controller" in data else set()
     used |= {"voltage", "duty", "current"} if {"voltage", "duty"} & set(columns) else set()
     for name, where in columns.items():
@@ -74,8 +74,8 @@ def _one_drive(rig: Rig, data: dict[str, Any]) -> Iterator[str]:
             yield f"columns.{name}.steps: must be in the order of their times"
         if where.integrated and name == "time":
             yield "columns.time.integrated: time is not integrated; leave it out"
-    if {"load", *JOINTS} & set(columns) and "gravity" not in estimated:
-        yield "columns.load, columns.joint and further ones: act through gravity; add it to estimate"
+    if "load" in columns and "gravity" not in estimated:
+        yield "columns.load: acts through gravity; add it to estimate"
     if ("applied" in columns) != ("applied" in estimated):
         yield "columns.applied and 'applied' in estimate belong together; add the missing one"
     if {"offset", "offset_per_file"} <= estimated | known:

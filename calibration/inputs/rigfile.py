@@ -4,6 +4,7 @@ import difflib
 import json
 import re
 from functools import cache
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -38,12 +39,15 @@ def load_rig(path: Path) -> Rig:
     Of several mistakes against the schema the others are its notes.
     """
     from jsonschema import Draft202012Validator
+    from jsonschema.validators import extend
 
     data, text = _read(path)
     if not isinstance(data, dict):
         raise CalibrationInputError(path, "is no rig file: 'rig', 'columns' and 'response' are needed")
     schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
-    errors = [_innermost(e) for e in Draft202012Validator(schema).iter_errors(data)]
+    finite = Draft202012Validator.TYPE_CHECKER.redefine("number", _is_finite)
+    checked = extend(Draft202012Validator, type_checker=finite)(schema)  # type: ignore[no-untyped-call]
+    errors = [_innermost(e) for e in checked.iter_errors(data)]
     if errors:  # a rule that the schema says in its own words holds for fields that are sound
         errors = [error for error in errors if not _says(error)] or errors
         errors.sort(key=lambda e: [str(p) for p in e.absolute_path])
@@ -72,6 +76,10 @@ def _read(path: Path) -> tuple[Any, str]:
     except yaml.MarkedYAMLError as error:
         line = error.problem_mark.line + 1 if error.problem_mark else None
         raise CalibrationInputError(path, f"is not YAML: {error.problem}", line) from None
+
+
+def _is_finite(_: object, value: object) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and isfinite(value)
 
 
 def _innermost(error: Any) -> Any:

@@ -4,11 +4,12 @@ samples are taken on time. The position says which of the two it was."""
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.arrays import Array, Mask
+from calibration.arrays import Array, Mask, by_median
 from calibration.inputs import thresholds as limits
 from calibration.inputs.declaration import Rig
 from calibration.inputs.run import Repair, Run, quantum
 
+BEND_OF_NOISE = 20**0.5  # times a row's noise, in a third difference: 1, 3, 3 and 1 squared. arithmetic
 STILL = ("time", "temperature", "supply", "reference")  # slow, or computed: they do not come with the frame
 
 
@@ -24,6 +25,39 @@ def lost_rows(run: Run) -> None:
     if at.sum() >= limits.LOST_PLACES and rows > limits.LOST_SHARE * run.rows:
         note = f"{rows} rows are missing in {int(at.sum())} places"
         run.repairs.append(Repair("lost", "all", rows, float(rows), note))
+
+
+def rows_without_a_stamp(run: Run) -> None:
+    """Put rows later by those that are missing before them; in place.
+
+    An even clock goes on as if there were none: it was made from the row's number. The position moves on by
+    whole rows there.
+    """
+    t, travel = run.columns["t"], np.diff(run.columns["position"])
+    even = np.abs(np.diff(t) / run.period_s - 1) < limits.OFF_BEAT
+    if len(t) < limits.FEWEST_ROWS or even.mean() < limits.REGULAR:
+        return
+    x = run.columns["position"][np.isfinite(run.columns["position"])]
+    noise = by_median(np.diff(x, 3)) / BEND_OF_NOISE
+    least = limits.STEPS_PER_ROW * max(quantum(x) or 0.0, np.sqrt(12.0) * noise)
+    near = np.sort([np.roll(travel, k) for k in (-2, -1, 1, 2)], axis=0)
+    usual, apart = (near[1] + near[2]) / 2, near[2] - near[1]
+    clear = np.abs(usual) > np.maximum(least, apart / limits.LIKE_ITS_NEIGHBOUR)
+    clear &= np.all([np.roll(even, k) for k in (-2, -1, 0, 1, 2)], axis=0)
+    clear[[0, 1, -2, -1]] = False
+    rows = np.where(clear, travel / np.where(clear, usual, 1.0), 1.0)
+    whole = np.maximum(np.rint(rows), 1.0)
+    sure = np.abs(rows - whole) < limits.OFF_BEAT
+    lost, count = sure & (whole > 1), int((whole - 1)[sure].sum())
+    if lost.sum() < limits.LOST_PLACES or count <= limits.LOST_SHARE * run.rows:
+        return
+    if (~sure).sum() > limits.BETWEEN * lost.sum():
+        return  # steps of every size are the motion's own
+    run.columns["t"] = t + run.period_s * np.concatenate([[0.0], np.cumsum(np.where(lost, whole - 1, 0.0))])
+    note = (
+        f"{count} rows are missing in {int(lost.sum())} places, though the stamps go on: rows are put later"
+    )
+    run.repairs.append(Repair("lost", "all", count, float(count), note))
 
 
 def _moved_on(run: Run, whole: Array) -> Mask:

@@ -66,6 +66,12 @@ LOST_SHARE = 0.001  # share of the rows that are missing, from which on it is re
 # of the travel that the rows about lost ones promise, that the drive must have made over them: rows that were
 # not lost have at most a half. arithmetic
 MOVED_ON = 0.6
+# steps of a sensor per row, from which on a row tells itself from two: a rounding is an eighth. arithmetic
+STEPS_PER_ROW = 8
+# of their mean, by which the motion of the rows before and after may differ: else it turns round. ASSUMPTION
+LIKE_ITS_NEIGHBOUR = 0.3
+# of the places with rows missing, those with steps between whole ones: more is a motion's. ASSUMPTION
+BETWEEN = 0.25
 FEWEST_REPEATS = 3  # rows that repeat the row before, at least, before a frame is said to be lost. ASSUMPTION
 # share of rows that may repeat the row before: more is how the file was written. ASSUMPTION
 MOST_REPEATS = 0.2

@@ -65,7 +65,7 @@ def look_at_forces(view: View, records: list[Run], options: Options) -> Balance:
     told = _told(view, when, notes)
     law = follows(view, made(), told.selection.held.after) if told.missing else []
     findings = [*told.findings, event] if event else told.findings
-    return replace(told, findings=findings, remarks=[*remarks, *law, *doubts(view, told)])
+    return replace(told, findings=findings, remarks=[*remarks, *told.remarks, *law, *doubts(view, told)])
 
 
 def _found(view: View, made: Make) -> tuple[Timed, list[str]]:
@@ -164,7 +164,8 @@ def _told(view: View, when: Timed, notes: list[str]) -> Balance:
     if wind and floor:
         floor, source = float(np.hypot(floor, wind)), f"{source}, and the effort's through the wind-up"
     still = [] if np.any(np.abs(view.direction) > 0.5) else ["the position does not move"]
-    notes = [*notes, *filter(None, [when.note]), f"floor of {channel}: {source}", *filtered(view), *still]
+    through, most = filtered(view)
+    notes = [*notes, *filter(None, [when.note, f"floor of {channel}: {source}", through]), *still]
     s, together, beyond = by_one_column(*beyond_names(s, scene), scene)
     named = [
         _of_the_zero(replace(f, share=x), s.effect(k)[problem.train], when.offsets, view)
@@ -192,6 +193,7 @@ def _told(view: View, when: Timed, notes: list[str]) -> Balance:
         not_identifiable=[*moves_with(s, bounds), *bounds],
         needs=[*filter(None, [when.close]), *needs],
         notes=[*notes, *lacking_names(scene, scene.channel)],
+        remarks=[through] if most and channel in view.columns else [],
         over=partial(place_of, view),
         spectrum=Spectrum(
             turns=view.x[view.rows],  # orders per position unit

@@ -7,7 +7,7 @@ from calibration.balances.balance import response_of
 from calibration.balances.candidate import Candidate
 from calibration.balances.floors import passed
 from calibration.balances.slowoffset import SLOW
-from calibration.balances.view import View
+from calibration.balances.view import WINDOW, View
 from calibration.decide.selection import Selection
 from calibration.finding import UNKNOWN
 from calibration.names import NAMES
@@ -18,19 +18,23 @@ from calibration.statistics.regression import inflation
 
 # of a parameter's variance by its neighbours: over five times the error it would have alone. arithmetic
 INFLATION = 30.0
+MOST = 0.5  # share that is lost, from which on nobody should miss it. by definition
 # that had evidence and failed elsewhere, as `Refusal.why` begins
 CLOSE = ("cross-validated gain is within luck", "makes the held-out", "no held-out")
 
 
-def filtered(view: View) -> list[str]:
-    """What share of the response's own column the filter takes away before anything is looked at."""
+def filtered(view: View) -> tuple[str, bool]:
+    """The share of the response's own column that the filter takes away, and whether that is most of it."""
     y = response_of(view, 0.0)[0]
     rows = view.rows[view.ok[view.rows]]
     if view.filter.sigma <= 0 or len(rows) < 2 or np.var(y[rows]) == 0:
-        return []
+        return "", False
     lost = 1 - float(np.var(view.filter(y, view.segment)[rows]) / np.var(y[rows]))
+    width = (
+        f"the filter of {WINDOW * view.sigma * view.period_s:.3g} s (`smooth_s` in the rig file sets another)"
+    )
     part = f"{100 * max(lost, 0.0):.3g} %"
-    return [f"the filter takes {part} of the mean square of {view.response.channel} away"]
+    return f"{width} takes {part} of the mean square of {view.response.channel} away", lost > MOST
 
 
 def lacking_names(scene: Scene, kind: str) -> list[str]:

@@ -5,6 +5,7 @@ from itertools import product
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from calibration.balances.candidate import sine_columns
 from calibration.balances.repeats import repeat_lag
@@ -39,6 +40,9 @@ STEP_CELLS = 0.05  # share of such a line's resolution cell, for its refinement.
 EDGE_CELLS = 0.25  # likewise of a square, which rows between its edges do not tell. ASSUMPTION
 # count of phases tried in each of three searches, each within a step of the one before. ASSUMPTION
 PHASES = 17
+NEIGHBOURS = 3  # multiples of a repeated motion on either side, that one is compared with. ASSUMPTION
+ALONE = 10.0  # times their power, from where on it stands alone. ASSUMPTION: a motion's fall off slowly
+SHAKEN = 0.01  # part of the motion's rms, below which nobody commanded such a wave. ASSUMPTION
 FEW = 4  # files: with more, every file's own phase costs too many columns for more than a sine. ASSUMPTION
 
 
@@ -72,7 +76,9 @@ def lines(s: Scene, follows: Array, large_first: bool = True) -> list[Candidate]
     if repeats * length < FEWEST_REPEATS:
         most = min(most, STRONG)
     multiples: Array = np.arange(1, most + 1) * np.float64(repeats)
-    avoid = multiples[[_power(s, follows, f) > _power(s, s.residual, f) for f in multiples]]
+    driven = np.array([_power(s, follows, f) for f in multiples])
+    follow = driven > np.array([_power(s, s.residual, f) for f in multiples])
+    avoid = multiples[follow & ~_shaken(s, driven, multiples)]
     least = max(TURNS / sum(lengths), IN_A_FILE / length)
     want = Wanted(span=length, least=least, most=5, avoid=avoid, large_first=large_first)
     out, count = [], len(np.unique(files))
@@ -94,6 +100,22 @@ def lines(s: Scene, follows: Array, large_first: bool = True) -> list[Candidate]
             at, step, size = {"frequency": (f, "Hz")}, STEP_OF_CELL / fitted, ("amplitude", s.unit)
             out.append(tried(NAME.name, shape, size, at=at, steps=(step,), frequency=f, **more))
     return out
+
+
+def _shaken(s: Scene, driven: Array, multiples: Array) -> NDArray[np.bool_]:
+    """Which multiples (k,) no repeated motion has: a disturbance shakes the drive there.
+
+    Its line in what follows the motion, `driven` (k,), stands alone among its neighbours, where the harmonics
+    of a motion fall off. Nobody commands so little of a stroke.
+    """
+    beside = np.pad(driven, NEIGHBOURS)
+    around = [np.roll(beside, k)[NEIGHBOURS:-NEIGHBOURS] for k in range(-NEIGHBOURS, NEIGHBOURS + 1) if k]
+    alone = driven > ALONE * np.max(around, axis=0)
+    x, train = s.view.x[s.view.rows], s.problem.train
+    least = float(np.var(x[train])) * (SHAKEN * float(train.sum())) ** 2 / 2
+    return np.array(
+        [a and _power(s, x, f) < least for a, f in zip(alone, multiples, strict=True)], dtype=bool
+    )
 
 
 def over_the_place(s: Scene, hertz: float) -> tuple[str, ...] | None:

@@ -20,10 +20,10 @@ SWUNG = 2.0  # turns: what carries a weight is hardly swung round more often. AS
 SLOPE_TURN = 1 / 72
 
 
-def gravity(s: Scene) -> Array:
-    """cos and sin of the angle (n_full, 2): the effect's own formula at phases 0 and 90 degrees. Those of a
-    load that is declared are per unit of it."""
-    rows = signals(len(s.view.t), {ANGLE: s.view.x / s.turn * 2 * pi})
+def gravity(s: Scene, x: Array | None = None) -> Array:
+    """cos and sin (n_full, 2) of the angle, or of angles `x` (n_full,): the effect's own formula at phases 0
+    and 90 degrees. Those of a load that is declared are per unit of it."""
+    rows = signals(len(s.view.t), {ANGLE: (s.view.x if x is None else x) / s.turn * 2 * pi})
     carried = s.view.columns.get("load", 1.0)
     sizes = ({"amplitude": 1.0, "phase": phase} for phase in (0.0, pi / 2))
     return np.column_stack([carried * evaluate(NAME.name, rows, p) for p in sizes])
@@ -53,13 +53,20 @@ def once_a_turn(f: Finding, s: Scene) -> Finding:
 
 
 def columns(s: Scene) -> list[Candidate]:
-    """One sine per turn, its phase fixed to the place: sessions share it when they share the zero."""
+    """One sine per turn, its phase fixed to the place: sessions share it when they share the zero.
+
+    Behind a joint whose axis is parallel the weight lies over the sum of both angles.
+    """
     if (s.pair is None and lacks(s)) or "gravity_cos" in s.declared:
         return []
     wound = ("cable_wrap",) if s.span < LEAST_TURN * s.turn else ()
     twins = (*forces_once_a_turn(s.view.rig.stages, s.turn), *wound)
     one = line(s, NAME.name, 1.0 / s.turn, stage="axis", harmonic=1, twins=twins)
-    return [replace(one, columns=s.at(gravity(s)))]
+    carried = replace(one, columns=s.at(gravity(s)))
+    if "joint" not in s.view.columns:
+        return [carried]
+    both = s.at(gravity(s, s.view.x + s.view.columns["joint"]))
+    return [carried, replace(one, columns=both, note="over the sum of this joint's angle and the other's")]
 
 
 def lacks(s: Scene) -> str:

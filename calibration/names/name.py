@@ -81,9 +81,9 @@ def both_ways(s: Scene) -> str:
 
 
 def beside_stated(s: Scene, number: str, along: Array, unit: str) -> list[Candidate]:
-    """A change of a friction number `along` full-rate rows, where the rig file does not estimate it."""
-    name = f"{number}_change"
-    return [candidate(name, s.at(along), (name, unit))] if number in s.view.rig.constants else []
+    """A change of a friction number `along` full-rate rows, from the known one or from none at all."""
+    name, known = f"{number}_change", s.pair is not None or number in s.view.rig.estimate
+    return [] if known else [candidate(name, s.at(along), (name, unit))]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,6 +11,7 @@ from calibration.balances.recursions import stop_operator
 from calibration.finding import UNKNOWN, Finding, of_columns
 from calibration.names import unknown_shapes as shapes
 from calibration.names.command_disturbance import lines
+from calibration.names.coupling import coupling
 from calibration.names.gravity_imbalance import gravity
 from calibration.names.lines import ON_CLOCK, SLOWEST_HZ, on_clock
 from calibration.names.name import FORCE, SENSORS, VOLTS, Array, Beside, Candidate, Name, Scene
@@ -89,7 +90,7 @@ def columns(s: Scene) -> list[Candidate]:
         return shapes.of_volts(s)
     if s.pair is None:
         found = [*shapes.moving_scale(s), *shapes.spring(s), *shapes.lost_motion(s), *shapes.bend(s)]
-        return [*found, *_swings(s)]
+        return [*found, *coupling(s), *_swings(s)]
     return [*_torques(s), *_fixed_lines(s)] if s.force else []
 
 
@@ -180,7 +181,6 @@ NAME = Name(
     channels=(FORCE, SENSORS, VOLTS),
     columns=columns,
     experiment="repeat the run: what is fixed to angle, to time or to neither tells where to look",
-    told=shapes.followed,
     stamps=clock_jumps,
     to_plant=to_plant,
     beside=Beside(consequences={"T": ("wind_torque",)}),

@@ -9,13 +9,15 @@ import numpy as np
 from calibration.balances.candidate import waves
 from calibration.balances.recursions import stop_operator
 from calibration.balances.view import View
-from calibration.finding import UNKNOWN, Finding
+from calibration.finding import UNKNOWN
+from calibration.names.gravity_imbalance import SLOPE_TURN
 from calibration.names.lines import line, of_stage
 from calibration.names.name import Array, Candidate, Scene, candidate
 from calibration.names.unnamed import HARMONICS
 
 SLOW = 4  # knots over time of a scale that moves. ASSUMPTION
 FOLLOWS = 2.0  # share: a lagging motor's current that follows the leading one's has 1. ASSUMPTION
+FOLLOWING = "the lagging motor's current follows the leading one's, not its own duty"
 WIDTHS = (0.02, 0.05, 0.1, 0.2, 0.4)  # part of the usual stroke, of the widest of several loops. ASSUMPTION
 
 
@@ -81,8 +83,10 @@ def lost_motion(s: Scene) -> list[Candidate]:
 
 
 def spring(s: Scene) -> list[Candidate]:
-    """A force in proportion to the place of a slide (a cable chain, a bellows): wide loops follow it, too."""
-    if not s.force or s.view.turn or "stiffness" in (*s.view.rig.estimate, *s.view.rig.constants):
+    """A force in proportion to the place of a slide (a cable chain, a bellows): wide loops follow it, too.
+    Over an angle that is too small for a weight or a cable to be told, it is either."""
+    wide = s.view.turn is not None and s.span >= SLOPE_TURN * s.view.turn
+    if not s.force or wide or "stiffness" in (*s.view.rig.estimate, *s.view.rig.constants):
         return []
     size = ("stiffness", f"{s.unit}/{s.angle_unit}")
     return [over("axis_angle", s.at(s.view.x - s.view.x.mean()), size)]
@@ -105,7 +109,7 @@ def of_volts(s: Scene) -> list[Candidate]:
     # a lagging motor whose current follows the leading one's lacks that one's back-EMF, times its share
     leading = np.tile(np.where(c.lagging[: len(a)] > 0, b, a), 2)
     column = w.constant * w.at(c.share) * c.lagging * leading
-    following = over("current", column, ("following", "1"), sign=1, most=FOLLOWS)
+    following = over("current", column, ("following", "1"), sign=1, most=FOLLOWS, note=FOLLOWING)
     # brushes over the angle of either motor, as a resistance and as a voltage
     turned = waves(s.view.x[s.view.rows] * s.pair.train.ratio, range(1, HARMONICS + 1))
     more: dict[str, Any] = {"kind": "line", "stage": "motor", "harmonic": 1}
@@ -122,10 +126,3 @@ def _brushes(s: Scene) -> list[Candidate]:
     motors = [replace(g, harmonics=HARMONICS, listed=()) for g in s.view.rig.stages if g.of_motor]
     blank = line(s, UNKNOWN, 0.0, ("amplitude", "ohm"), domain="motor_angle")
     return [c for g in motors for c in of_stage(s, g, blank, s.view.columns["current"])]
-
-
-def followed(f: Finding) -> Finding:
-    """A current that follows the other motor's, said in words: the catalogue has no name for it."""
-    if "following" not in f.parameters:
-        return f
-    return replace(f, note="the lagging motor's current follows the leading one's, not its own duty")

@@ -15,19 +15,28 @@ from scenarios.language.load import DEFAULT_PLANT
 from scenarios.language.plants import named, plant_model
 
 Document = dict[str, Any]
+FAULT = "fault"
+"""The place of every fault: one is put beside the others."""
 _LEVELS = 5
 """Grid points of a distribution when the campaign does not say how many."""
+_LOOKED_AT = 20
+"""Values of a list that are looked at before anything runs; each takes some hundredths of a second."""
+_TAIL = 0.001
+"""Share of either tail of a distribution that is not looked at beforehand: some reach for ever."""
 
 
 @dataclass(frozen=True)
 class Input:
-    """name: its column. draw: share within 0..1 to value, through the inverse distribution. put: writes a
-    value into a scenario's plain document. values: the grid's."""
+    """name: its column. place: what it changes. draw: share within 0..1 to value, through the inverse
+    distribution. put: writes a value into a scenario's plain document. values: the grid's. ends: those that
+    are looked at before anything runs: of a list the first ones, of a distribution all but both tails."""
 
     name: str
+    place: str
     draw: Callable[[float], Any]
     put: Callable[[Document, Any], None]
     values: Sequence[Any]
+    ends: Sequence[Any]
 
     @property
     def numeric(self) -> bool:
@@ -39,26 +48,36 @@ def read(given: dict[str, Any], where: str, base: Document) -> Input:
     """An input from its checked block; raises ScenarioError. base: the scenario it will change."""
     kind = next(word for word in _PUTS if word in given)
     put, default_name, number = _PUTS[kind](given[kind], where, base)
-    draw, values = _distribution(given, where, kind)
-    name = str(given.get("name", default_name))
-    if "times" not in given:
-        return Input(name, draw, put, values)
-    if number is None:
+    draw, values, ends = _distribution(given, where, kind)
+    if "times" in given and number is None:
         raise ScenarioError(f"{where}: a {kind} has no value to multiply; use `is`")
-    return Input(name, draw, lambda document, value: put(document, number * value), values)
+    factor = number if "times" in given else None
+    return Input(
+        name=str(given.get("name", default_name)),
+        place=default_name,
+        draw=draw,
+        put=put if factor is None else lambda document, value: put(document, factor * value),
+        values=values,
+        ends=ends,
+    )
 
 
-def _distribution(given: dict[str, Any], where: str, kind: str) -> tuple[Callable[[float], Any], list[Any]]:
+Drawn = tuple[Callable[[float], Any], list[Any], list[Any]]
+"""Share within 0..1 to value, the grid's values, and those that are looked at beforehand."""
+
+
+def _distribution(given: dict[str, Any], where: str, kind: str) -> Drawn:
     if ("is" in given) == ("times" in given):
         raise ScenarioError(f"{where}: {kind} needs `is` or `times`: a list of values or a distribution")
     spread: Any = given.get("times", given.get("is"))
     if isinstance(spread, list):
         if "times" in given and not all(type(each) in (int, float) for each in spread):
             raise ScenarioError(f"{where}: {kind}: `times` is a list of numbers")
-        return (lambda share: spread[min(int(share * len(spread)), len(spread) - 1)]), spread
+        pick = lambda share: spread[min(int(share * len(spread)), len(spread) - 1)]  # noqa: E731
+        return pick, spread, spread[:_LOOKED_AT]
     levels = int(spread.get("levels", _LEVELS))
     inverse = _inverse(spread, where)
-    whole = bool(spread.get("whole"))
+    whole = spread.get("whole") or kind in ("seed", "parameter")
 
     def draw(share: float) -> Any:
         value = inverse(share)
@@ -66,7 +85,7 @@ def _distribution(given: dict[str, Any], where: str, kind: str) -> tuple[Callabl
             raise ScenarioError(f"{where}: {kind}: the distribution gives {value}, which is no number")
         return round(value) if whole else value
 
-    return draw, [draw((k + 0.5) / levels) for k in range(levels)]
+    return draw, [draw((k + 0.5) / levels) for k in range(levels)], [draw(_TAIL), draw(1.0 - _TAIL)]
 
 
 def _inverse(spread: dict[str, Any], where: str) -> Callable[[float], float]:
@@ -128,9 +147,17 @@ def _at(path: Sequence[str], where: str, read: Callable[[Any], Any]) -> Callable
         try:
             document[path[-1]] = read(value)
         except (TypeError, ValueError, OverflowError):
-            raise ScenarioError(f"{where}: {'.'.join(path)}: expected a number, found {value!r}") from None
+            what = "a whole number" if read is _whole else "a number"
+            raise ScenarioError(f"{where}: {'.'.join(path)}: expected {what}, found {value!r}") from None
 
     return put
+
+
+def _whole(value: Any) -> int:
+    """A whole number; ValueError for a part of one."""
+    if int(value) != value:
+        raise ValueError(value)
+    return int(value)
 
 
 def _fault(_given: Any, where: str, base: Document) -> Put:
@@ -140,7 +167,7 @@ def _fault(_given: Any, where: str, base: Document) -> Put:
         if value != "none":
             document["faults"] = [*document.get("faults", []), copy.deepcopy(value)]
 
-    return put, "fault", None
+    return put, FAULT, None
 
 
 def _field(path: Any, where: str, base: Document) -> Put:
@@ -164,11 +191,11 @@ def _field(path: Any, where: str, base: Document) -> Put:
 _PUTS: dict[str, Callable[[Any, str, Document], Put]] = {
     "plant": _plant,
     "parameter": lambda given, where, base: (
-        _at(("network", "nodes", given["node"], "parameters", str(given["number"])), where, int),
+        _at(("network", "nodes", given["node"], "parameters", str(given["number"])), where, _whole),
         f"{given['node']} parameter {given['number']}",
         None,
     ),
-    "seed": lambda given, where, base: (_at(("seed",), where, int), "seed", None),
+    "seed": lambda given, where, base: (_at(("seed",), where, _whole), "seed", None),
     "start": lambda axis, where, base: (
         _at(("start", axis), where, lambda value: f"{float(value)!r} deg"),
         f"start, {axis.replace('_', ' ')}",

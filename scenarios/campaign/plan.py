@@ -3,7 +3,7 @@
 import hashlib
 import json
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,7 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from scenarios.campaign import inputs
-from scenarios.lab.prepare import CAMPAIGNS, located
+from scenarios.campaign.inputs import FAULT, Input
+from scenarios.lab.prepare import CAMPAIGNS, located, prepare
 from scenarios.lab.prepare import load as load_scenario
 from scenarios.language.document import Document, ScenarioError, read
 from scenarios.language.units import parse
@@ -53,7 +54,7 @@ class Plan:
     description: str
     scenario: Path
     base: dict[str, Any]
-    inputs: tuple[inputs.Input, ...]
+    inputs: tuple[Input, ...]
     shares: npt.NDArray[np.float64]
     """(runs, inputs): where in its distribution each input lies; (0, 0) for a grid."""
     way: str
@@ -67,6 +68,14 @@ class Plan:
         """Planned runs."""
         return math.prod(len(each.values) for each in self.inputs) if self.way == "grid" else len(self.shares)
 
+    def document(self, values: Iterable[tuple[Input, Any]]) -> dict[str, Any]:
+        """The scenario, plain, with these values of some inputs."""
+        document: dict[str, Any] = json.loads(json.dumps(self.base))
+        del document["_folder"]
+        for each, value in values:
+            each.put(document, value)
+        return document
+
     def cases(self) -> Iterator[Case]:
         """The planned runs, one after the other."""
         return map(self.case, range(self.count))
@@ -79,10 +88,8 @@ class Plan:
         else:
             row = self.shares[index]
             values = tuple(each.draw(float(share)) for each, share in zip(self.inputs, row, strict=True))
-        document = json.loads(json.dumps(self.base))
-        folder = document.pop("_folder")
-        for each, value in zip(self.inputs, values, strict=True):
-            each.put(document, value)
+        document = self.document(zip(self.inputs, values, strict=True))
+        folder = self.base["_folder"]
         text = json.dumps([document, folder], sort_keys=True)
         key = hashlib.sha256(text.encode()).hexdigest()[:16]
         named = {each.name: value for each, value in zip(self.inputs, values, strict=True)}
@@ -122,6 +129,9 @@ def load(file: Path) -> Plan:
             f"{file}: {runs} runs are planned, one campaign has at most {MOST}: give it {lower}, or make "
             "several"
         )
+    places = [each.place for each in found if each.place != FAULT]  # of them there may be several
+    if twice := next((place for k, place in enumerate(places) if place in places[:k]), ""):
+        raise ScenarioError(f"{file}: two inputs change {twice}, and the later one would win; leave one out")
     plan = Plan(
         file=file,
         name=data["name"],
@@ -136,6 +146,12 @@ def load(file: Path) -> Plan:
         time_s=parse(data["budget"]["time"], "time") if "time" in data.get("budget", {}) else None,
     )
     load_scenario(Document(file, plan.case(0).document, {}))  # the first case is a scenario, too
+    for each in found:  # and the ends of every input
+        for value in each.ends:
+            try:
+                prepare(Document(file, plan.document([(each, value)]), {}))
+            except ScenarioError as error:
+                raise ScenarioError(f"{file}: input {each.name!r}, value {value!r}: {error}") from None
     return plan
 
 

@@ -47,3 +47,16 @@ def test_neither_a_trifle_nor_what_is_within_its_error_is_listed(
     whole = replace(line("gear_eccentricity", turns, ORDER), columns=columns, stage="screw", searched=1)
     s = select(p, [whole], np.random.default_rng(1))
     assert [f.harmonic for f in findings_of(s, 0)] == [2]
+
+
+@pytest.mark.parametrize("there", [True, False])
+def test_a_harmonic_is_listed_only_where_held_out_rows_have_it(there: bool) -> None:
+    """The second is on the fitted rows alone, as chance has it among many, or on all."""
+    turns = 1.5 * (1 - np.cos(2 * np.pi * np.arange(ROWS) / 1000.0))
+    p = problem(np.cos(2 * np.pi * ORDER * turns) + 0.1 * np.random.default_rng(2).standard_normal(ROWS))
+    second = 0.2 * np.cos(2 * np.pi * 2 * ORDER * turns)
+    p.y = p.y + np.where(p.held & (not there), -second, second)
+    columns = np.hstack([line("gear_eccentricity", turns, h * ORDER).columns for h in (1, 2)])
+    whole = replace(line("gear_eccentricity", turns, ORDER), columns=columns, stage="screw", searched=1)
+    s = select(p, [whole], np.random.default_rng(1))
+    assert [f.harmonic for f in findings_of(s, 0)] == ([1, 2] if there else [1])

@@ -121,6 +121,33 @@ def test_rows_missing_here_and_there_are_counted(tmp_path: Path) -> None:
     assert (found.kind, found.rows) == ("lost", int((~keep).sum()))
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_rows_are_put_later_where_rows_are_missing_and_nobody_stamped_it(tmp_path: Path, seed: int) -> None:
+    """A logger that stamps by the row's number: only the position tells. At rest nothing does."""
+    rng = np.random.default_rng(seed)
+    r = made(seed)
+    keep = rng.random(ROWS) > 0.02
+    true_s, quick = r.columns["t"][keep], np.abs(np.cos(0.5 * r.columns["t"][keep])) > 0.3
+    r.columns = {c: x[keep] for c, x in r.columns.items()}
+    r.columns["t"] = PERIOD_S * np.arange(int(keep.sum()))
+    repair(r, rig(tmp_path))
+    (found,) = r.repairs
+    assert found.kind == "lost"
+    told, truth = np.diff(r.columns["t"]), np.diff(true_s)
+    assert np.all((told < 1.5 * PERIOD_S) | np.isclose(told, truth))  # none where none is missing
+    clear = quick[1:] & (truth > 1.5 * PERIOD_S)
+    assert np.isclose(told, truth)[clear].mean() > 0.9
+
+
+def test_a_motion_in_uneven_steps_has_lost_nothing(tmp_path: Path) -> None:
+    """A drive that is pushed on by half a row's way, one way and the other, in every thirtieth row."""
+    r = made(3)
+    push = 0.1 * (np.arange(ROWS) % 30 == 0) * np.sign(np.cos(0.5 * r.columns["t"]))
+    r.columns["position"] = r.columns["position"] + np.cumsum(push)
+    repair(r, rig(tmp_path))
+    assert "lost" not in [x.kind for x in r.repairs]
+
+
 def test_a_step_of_an_effort_through_zero_is_no_wrap(tmp_path: Path) -> None:
     """From -20 to 486 counts in a row: a register of 512 values holds either of them, not both."""
     t = PERIOD_S * np.arange(ROWS)

@@ -233,7 +233,7 @@ def test_two_joints_that_lie_anyhow_turn_gravity(tmp_path: Path) -> None:
     records = read_drive([tmp_path / "a.csv"], rig).records
     p = problem_of(view_of(records, rig, rig.responses[0]), records, [])
     _, left = p.plain_fit(p.valid)
-    assert p.base.shape[1] == 2 * 3**2 + 1
+    assert p.base.shape[1] < 2 * 3**2 + 1  # along this motion some of the products are alike
     assert np.std(left[p.valid]) < 0.01 * np.std(p.y[p.valid])  # what the filter takes off the waves
 
 

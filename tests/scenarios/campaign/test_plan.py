@@ -187,7 +187,10 @@ def test_a_hundred_thousand_runs_are_planned_without_being_held(campaign: Any) -
         ({"field": "steps." + "9" * 5000, "is": [1]}, "no field"),
         ({"seed": True, "is": {"between": [0, 9], "levels": 1_000_000_000}}, "at most 1000"),
         ({"weather": 1, "is": [1]}, "unknown field"),
-        ({"parameter": {"node": "AXIS_RA", "number": 2}, "is": ["1e30"]}, "expected a number, found '1e30'"),
+        (
+            {"parameter": {"node": "AXIS_RA", "number": 2}, "is": ["1e30"]},
+            "expected a whole number, found '1e30'",
+        ),
         ({"start": "hour_angle", "is": ["west"]}, "expected a number, found 'west'"),
         ({"parameter": {"node": "AXIS_XY", "number": 1}, "is": [1]}, "AXIS_XY"),
     ],
@@ -217,3 +220,21 @@ def test_start_angles_are_an_axis_and_the_telescope_stands_there(campaign: Any) 
     assert starts[2] - starts[0] == pytest.approx(turn * 60 / 360, abs=1)
     with pytest.raises(ScenarioError, match="beyond the soft limits"):
         load(campaign([{"start": "declination", "is": [-80]}], sample="grid"))
+
+
+@pytest.mark.parametrize(
+    ("inputs", "says"),
+    [
+        ([{"plant": FRICTION, "times": {"between": [-1, 1]}}], rf"value -0.998.*{FRICTION}"),
+        ([{"seed": True, "is": [1, 1.5]}], "expected a whole number, found 1.5"),
+        (
+            [{"plant": FRICTION, "times": [1, 2]}, {"plant": FRICTION, "is": [3], "name": "b"}],
+            "the later one",
+        ),
+    ],
+)
+def test_what_no_run_could_use_is_refused_before_the_first_run(
+    campaign: Any, inputs: list[dict[str, Any]], says: str
+) -> None:
+    with pytest.raises(ScenarioError, match=says):
+        load(campaign(inputs))
