@@ -36,6 +36,7 @@ def given(beta: Sequence[float], errors: Sequence[float] | float, *some: Candida
     b[at], cov[at, :], cov[:, at] = beta, 0.0, 0.0
     cov[at, at] = np.diag(each**2)
     s.after = replace(s.after, beta=b, covariance=cov)
+    s.problem.y = s.columns @ b  # held-out rows have it, too
     return s
 
 
@@ -339,3 +340,18 @@ def test_of_several_runs_a_harmonic_is_told_as_the_run_that_shows_it_best() -> N
     found = findings_of(given([3.0, 0.0, 1.0, 0.0, 0.0, 5.0, 0.0, 0.5], 0.01, c), 0)
     assert [f.parameters["amplitude"].value for f in found] == pytest.approx([5.0, 1.0])
     assert [f.parameters["phase"].value for f in found] == pytest.approx([-np.pi / 2, 0.0])
+
+
+@pytest.mark.parametrize(("part", "shown"), [(1.0, True), (0.55, True), (0.45, False), (-1.0, False)])
+def test_a_harmonic_is_told_where_held_out_rows_are_better_off_with_it(part: float, shown: bool) -> None:
+    """With half of its size there they are as well off without it."""
+    own = given([3.0, 0.0, 1.0, 0.0], 0.01, wave(waved(1), waved(2), stage="screw"))
+    p = own.problem
+    p.y = np.where(p.held, p.y + (part - 1.0) * waved(2)[:, 0], p.y)
+    assert [f.harmonic for f in findings_of(own, 0)] == ([1, 2] if shown else [1])
+    p.held = T < -1.0
+    assert [f.harmonic for f in findings_of(own, 0)] == [1, 2]  # none is held out
+
+
+def test_a_candidates_note_is_told() -> None:
+    assert finding_of(of(2 * A, term("brake_drag", A[:, None], note="as said")), 0).note == "as said"
