@@ -79,7 +79,7 @@ def tooth_more_or_less(angle: Array | None, span: float) -> Callable[[int, Candi
 
 def order_beside(s: Selection, scene: Scene) -> Callable[[int, Candidate], list[Wrong]]:
     """Lines of a drive at an order beside their own."""
-    span, turn, x = scene.span or 1.0, scene.view.turn or 1.0, scene.view.x[scene.view.rows]
+    span, turn, x = scene.span, scene.turn, scene.view.x[scene.view.rows]
 
     def wrong_of(k: int, c: Candidate) -> list[Wrong]:
         whole_stage = c.harmonic is None and c.stage is not None

@@ -155,23 +155,20 @@ def folds(problem: Problem, use: Mask) -> NDArray[np.int64]:
 def cross_validate(problem: Problem, x0: Array, x1: Array, whitener: Whitener) -> HeldOut:
     """Score two designs on training rows they were not fitted to, in FOLDS folds of pieces in time.
 
-    Rows that the others do not tell are not used. Not a number where the rows make fewer than two folds.
+    Rows that the others do not tell are not used. Not a number where the others make fewer than two folds.
     """
     rows = problem.train
     use = whitener.usable(rows)
     if use.sum() < limits.FEWEST_VALIDATED:
         return HeldOut()
     fold = folds(problem, use)
-    dealt = np.unique(fold)
-    if len(dealt) < 2:
-        return HeldOut()
     y = whitener.whiten(problem.y, rows)
     residuals: list[Array] = []
     tested = np.ones(len(y), dtype=bool)
     for x in (x0, x1):
         w = whitener.whiten(x, rows)
         e = np.empty(len(y))
-        for k in dealt:
+        for k in np.unique(fold):
             out = fold == k
             e[out] = y[out] - w[out] @ solve(w[~out], y[~out])
             if x is x1:

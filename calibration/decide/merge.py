@@ -46,18 +46,29 @@ def _resolve_gain(findings: list[Finding]) -> list[Finding]:
     return out
 
 
+def _place(f: Finding) -> tuple[str, str | None]:
+    """Where a name is one effect."""
+    return f.name, None if _beside(f).single else f.domain if f.name == UNKNOWN else f.stage
+
+
+def _is_twist(f: Finding) -> bool:
+    """Whether the encoders show by how much the trains are twisted."""
+    return f.channel == "K" and "amplitude" in f.parameters
+
+
 def _same_key(findings: list[Finding]) -> list[Finding]:
     """One finding of a name and place; its twist, which the encoders show, beside its torque."""
+    twists = {f.key: f.parameters["amplitude"] for f in findings if _is_twist(f)}
+    torques = {_place(f) for f in findings if f.channel == "T"}
     best: dict[tuple[str, str | None], Finding] = {}
     # of one late column the sensors tell most, whatever its share
     for f in sorted(findings, key=lambda f: ("SKETU".find(f.channel) * (f.domain == "clock"), -f.share)):
-        single = _beside(f).single
-        key = (f.name, None if single else f.domain if f.name == UNKNOWN else f.stage)
-        first = best.setdefault(key, f)
-        for torque, twist in ((first, f), (f, first)):
-            if torque.channel == "T" and twist.channel == "K" and "amplitude" in twist.parameters:
-                best[key] = torque.having(kinematic=twist.parameters["amplitude"])
-        if not single and f.harmonic != first.harmonic and f.channel == first.channel:
+        if _is_twist(f) and _place(f) in torques:
+            continue
+        if f.channel == "T" and f.key in twists:
+            f = f.having(kinematic=twists[f.key])
+        first = best.setdefault(_place(f), f)
+        if not _beside(f).single and f.harmonic != first.harmonic and f.channel == first.channel:
             best[(f"{f.name} {f.harmonic}", f.stage)] = f
     return list(best.values())
 

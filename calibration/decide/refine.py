@@ -98,7 +98,7 @@ def unseen(problem: Problem, c: Candidate) -> tuple[float, float] | None:
         return _alike(c, _step(c, onset), problem.train)
 
     middle = _begin(c)
-    if not np.any(c.columns[problem.train]) or not same(middle):
+    if not same(middle):  # as where no row has it
         return None
     low, high = (_edge(same, middle, way) for way in (-1.0, 1.0))
     return (low, high) if high - low > limits.SHORTEST_UNSEEN_S else None

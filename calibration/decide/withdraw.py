@@ -107,7 +107,7 @@ def of_calibrated(findings: list[Finding], scene: Scene, final: dict[str, float]
     out = []
     for f in findings:
         was, now = (known, coulomb) if OF_COULOMB in f.parameters else (before, after)
-        parts = NAMES[f.name].relative if was > 0 and now > 0 else ()
+        parts = NAMES[f.name].relative if was > 0 else ()
         sizes = {size: f.parameters[size] for size in parts if size in f.parameters}
         out.append(f.having(**{k: p.times(was / now) for k, p in sizes.items() if p.unit.startswith("1")}))
     return out

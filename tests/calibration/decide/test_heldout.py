@@ -1,17 +1,29 @@
 """Held-out scores: who is compared on which rows, against closed forms."""
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy import stats
 
-from calibration.decide.heldout import Model, compare, cross_validate, folds, paired_z
-from calibration.decide.thresholds import FEWEST_HELD, FOLDS
+from calibration.balances.frame import Frame
+from calibration.decide.heldout import (
+    HeldOut,
+    Model,
+    choose_held_out,
+    compare,
+    cross_validate,
+    folds,
+    paired_z,
+)
+from calibration.decide.thresholds import FEWEST_HELD, FEWEST_VALIDATED, FOLDS, ROUNDING
 from calibration.statistics.regression import solve
 from calibration.statistics.whitening import Whitener
-from tests.calibration.decide.made import problem
+from tests.calibration.decide.made import PERIOD_S, problem
 
 PLAIN = Whitener(np.zeros(0))
 SEEDS = st.integers(0, 2**32 - 1)
@@ -182,3 +194,236 @@ def test_rows_that_the_others_do_not_tell_are_not_validated() -> None:
     p = replace(p, y=p.y + x @ np.array([1.0, 10.0, -10.0]), valid=at != 1012)
     found = cross_validate(p, x[:, :1], x, PLAIN)
     assert found.after < 1.2
+
+
+def test_nothing_that_was_compared_is_no_gain() -> None:
+    none = HeldOut()
+    assert (none.z, none.share, none.everywhere, none.apart, none.sure) == (0.0, 0.0, False, False, False)
+    assert np.isnan(none.before) and np.isnan(none.after)
+    assert HeldOut(before=3.0, after=2.0).taken == 5.0
+
+
+@pytest.mark.parametrize(
+    ("z", "share", "sure"), [(9.0, 0.5, True), (2.0, 0.5, False), (9.0, ROUNDING, False), (-9.0, 0.5, False)]
+)
+def test_a_gain_is_sure_beyond_luck_and_rounding(z: float, share: float, sure: bool) -> None:
+    assert HeldOut(z=z, share=share).sure is sure
+
+
+def test_the_fewest_rows_are_compared_and_their_z_is_that_of_the_squares() -> None:
+    y, x = np.random.default_rng(1).standard_normal((2, 400))
+    one, other = Model(x=x[:, None], beta=np.zeros(1)), Model(x=x[:, None], beta=np.array([0.3]))
+    p = problem(y + x)
+    p.held = np.arange(400) < FEWEST_HELD
+    found = compare(p, one, other, PLAIN)
+    left = [(p.y - m.x @ m.beta)[p.test] for m in (one, other)]
+    assert found.before == pytest.approx(np.sqrt(np.mean(left[0] ** 2)))
+    assert found.apart and not found.everywhere
+    assert found.z == pytest.approx(paired_z(left[0] ** 2 - left[1] ** 2, p.block)) and found.z > 0
+    coloured = Whitener(np.array([0.5]))
+    white = [e[1:] - 0.5 * e[:-1] for e in left]
+    whitened = compare(p, one, other, coloured).z
+    assert whitened == pytest.approx(paired_z(white[0] ** 2 - white[1] ** 2, p.block))
+    p.session, p.turned = p.run, np.ones(400, dtype=bool)
+    assert not compare(p, one, other, PLAIN).apart
+
+
+def test_nothing_is_taken_off_nothing() -> None:
+    p = problem(np.zeros(400))
+    model = Model(x=np.ones((400, 1)), beta=np.zeros(1))
+    found = compare(p, model, model, PLAIN)
+    assert (found.before, found.share, found.z) == (0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("rows", "block", "size"), [(600, 20, 20), (40, 20, 20), (39, 20, 9), (7, 20, 1), (3, 20, 1), (2, 20, 1)]
+)
+def test_a_z_is_students_over_blocks_of_a_quarter_where_there_would_be_one(
+    rows: int, block: int, size: int
+) -> None:
+    gain = np.random.default_rng(rows).standard_normal(rows) + 2.0
+    sums = np.array([gain[k : k + size].sum() for k in range(0, rows, size)])
+    expected = stats.ttest_1samp(sums, 0.0).statistic
+    assert paired_z(gain, block) == pytest.approx(expected)
+
+
+def test_no_gain_of_one_row_or_none_is_told() -> None:
+    assert paired_z(np.zeros(0), 20) == paired_z(np.array([3.0]), 20) == 0.0
+
+
+def test_a_new_segments_offset_alone_is_fitted_anew() -> None:
+    """Without such a column nothing of the held-out rows is fitted."""
+    x = np.random.default_rng(5).standard_normal((400, 1))
+    p = problem(2.0 * x[:, 0] + 50.0)
+    left = Model(x=x, beta=np.array([2.0])).residual(p, p.test)
+    assert left == pytest.approx(np.full(p.test.sum(), 50.0))
+
+
+@pytest.mark.parametrize("size", [0.01, 1.0])
+def test_every_harmonics_own_size_is_kept_as_its_phase_is_fitted(size: float) -> None:
+    """Of three fitted runs the middle one's size counts; a harmonic that none of them has is left."""
+    t = np.arange(800) / 40.0
+    p = problem(np.zeros(800))
+    pairs = np.zeros((800, 20))
+    for run in range(4):
+        for h, turns in enumerate((t, 2 * t)):
+            at, mine = 4 * run + 2 * h, p.run == run
+            pairs[:, at] = np.cos(2 * np.pi * turns) * mine
+            pairs[:, at + 1] = np.sin(2 * np.pi * turns) * mine
+    pairs[:, 16] = np.cos(2 * np.pi * 3 * t) * (p.run == 3)
+    pairs[:, 17] = np.sin(2 * np.pi * 3 * t) * (p.run == 3)
+    beta = np.zeros(20)
+    beta[[0, 4, 8]] = size * np.array([1.0, 1.5, 9.0])
+    beta[[3, 7, 11]] = size * np.array([0.2, 0.5, 0.4])
+    first, second = np.cos(2 * np.pi * t + 1.0), np.cos(2 * np.pi * 2 * t - 2.0)
+    third = np.cos(2 * np.pi * 3 * t)
+    p.y = np.where(p.run == 3, size * (1.7 * first + 0.3 * second + 2.0 * third), 0.0)
+    left = Model(x=pairs, beta=beta, phases=[slice(0, 20)]).residual(p, p.test)
+    expected = size * ((1.7 - 1.5) * first + (0.3 - 0.4) * second + 2.0 * third)[p.test]
+    assert left == pytest.approx(expected, abs=1e-9)
+
+
+@pytest.mark.parametrize("seconds", [60.0, 20.0, 2.0])
+def test_a_fold_has_pieces_in_turn_and_every_run_begins_with_the_next(seconds: float) -> None:
+    """Six seconds each, or as short as to make ten pieces of all runs, but of eight rows at least."""
+    rows = round(seconds / PERIOD_S)
+    for runs in (1, 3):
+        p = problem(np.zeros(rows * runs), runs=runs, held=9)
+        longest = min(120, rows * runs // 10)
+        piece, run = np.arange(rows * runs) % rows // max(longest, 8), np.arange(rows * runs) // rows
+        assert (folds(p, p.train) == (piece + run) % FOLDS).all()
+
+
+def test_pieces_that_are_not_used_are_not_dealt() -> None:
+    p = problem(np.zeros(2400), runs=2, held=9)
+    used = (np.arange(2400) // 120 % 10 < 3) | (np.arange(2400) // 120 % 10 > 5)
+    piece, run = np.arange(2400) // 120 % 10, np.arange(2400) // 1200
+    expected = (np.where(piece > 5, piece - 3, piece) + run) % FOLDS
+    assert (folds(p, used) == expected[used]).all()
+
+
+@pytest.mark.parametrize("size", [1.0, -1.0, 0.02])
+def test_a_validation_is_that_of_its_folds_by_least_squares(size: float) -> None:
+    rng = np.random.default_rng(7)
+    x, y = rng.standard_normal((1200, 2)), rng.standard_normal(1200)
+    p = problem(y + size * x[:, 1], held=9)
+    found = cross_validate(p, x[:, :1], x, PLAIN)
+    fold, left = folds(p, p.train), []
+    for some in (x[:, :1], x):
+        e = np.zeros(1200)
+        for k in range(FOLDS):
+            out = fold == k
+            e[out] = p.y[out] - some[out] @ np.linalg.lstsq(some[~out], p.y[~out], rcond=None)[0]
+        left.append(e)
+    gain = left[0] ** 2 - left[1] ** 2
+    assert (found.before, found.after) == pytest.approx(tuple(np.sqrt(np.mean(e**2)) for e in left))
+    assert found.z == pytest.approx(paired_z(gain, p.block))
+    assert found.everywhere is all(gain[fold == k].sum() > 0 for k in range(FOLDS))
+    assert found.everywhere is (abs(size) > 0.5)
+
+
+def test_a_gain_that_one_fold_lacks_is_not_everywhere() -> None:
+    x, y = np.random.default_rng(12).standard_normal((2, 1200))
+    p = problem(y, held=9)
+    p.y = y + np.where(folds(p, p.train) == 3, 0.0, x)
+    base = np.ones((1200, 1))
+    found = cross_validate(p, base, np.column_stack([base, x]), PLAIN)
+    assert found.z > 2 and found.share > 0.1 and not found.everywhere
+
+
+def test_pieces_that_one_run_lacks_are_dealt_to_its_others_in_turn() -> None:
+    """The second run has its first and third piece alone, whatever the first one has."""
+    p = problem(np.zeros(2400), runs=2, held=9)
+    piece, run = np.arange(2400) // 120 % 10, np.arange(2400) // 1200
+    used = (run == 0) | (piece == 0) | (piece == 2) | (piece == 9)
+    rank = np.where(run == 0, piece, np.where(piece == 9, 2, piece // 2))
+    assert (folds(p, used) == ((rank + run) % FOLDS)[used]).all()
+
+
+def test_a_column_that_one_fold_alone_has_gains_not_in_every_fold() -> None:
+    """It is told by the others nowhere; a column that is nothing gains nothing in any."""
+    x, y = np.random.default_rng(8).standard_normal((2, 1200))
+    p = problem(y, held=9)
+    base = np.ones((1200, 1))
+    same = cross_validate(p, base, np.column_stack([base, np.zeros(1200)]), PLAIN)
+    assert same.share == pytest.approx(0.0) and not same.everywhere
+    small = problem(1e-3 * (y + x), held=9)
+    assert cross_validate(small, base, np.column_stack([base, x]), PLAIN).everywhere
+
+
+@pytest.mark.parametrize(("rows", "told"), [(FEWEST_VALIDATED, True), (FEWEST_VALIDATED - 1, False)])
+def test_few_rows_validate_nothing(rows: int, told: bool) -> None:
+    x, y = np.random.default_rng(9).standard_normal((2, 400))
+    p = problem(y + x, held=9)
+    p.valid = np.arange(400) < rows
+    found = cross_validate(p, np.ones((400, 1)), np.column_stack([np.ones(400), x]), PLAIN)
+    assert np.isfinite(found.before) is np.bool_(told)
+    # rows that the others do not tell are none
+    alone = np.where(np.arange(400) < 8, x, 0.0)  # of the first piece, and its fold's
+    p.valid = np.arange(400) < rows + 8
+    untold = cross_validate(p, np.ones((400, 1)), np.column_stack([np.ones(400), alone]), PLAIN)
+    assert np.isfinite(untold.before) is np.bool_(told)
+
+
+@pytest.mark.parametrize(("alone", "told"), [(FOLDS - 1, False), (FOLDS - 2, True)])
+def test_what_the_others_tell_in_one_fold_only_is_validated_in_none(alone: int, told: bool) -> None:
+    """So many folds have a column each that the others lack."""
+    p = problem(np.random.default_rng(10).standard_normal(1200), held=9)
+    fold, base = folds(p, p.train), np.ones((1200, 1))
+    own = np.column_stack([fold == k for k in range(alone)]).astype(float)
+    found = cross_validate(p, base, np.hstack([base, own]), PLAIN)
+    assert np.isfinite(found.before) is np.bool_(told)
+
+
+def frame(*speeds: float, sessions: str = "", loops: str = "", rows: int = 100) -> Frame:
+    """Runs of these speeds, 2 s a row; a letter of each one's session, c where its loop is closed."""
+
+    def run(k: int) -> SimpleNamespace:
+        header = {"loop": "closed" if loops[k : k + 1] == "c" else "open"}
+        session = sessions[k : k + 1] or str(k)
+        return SimpleNamespace(name=f"r{k}", session=session, header=header, among=lambda n: f"r{k}" in n)
+
+    label = np.repeat(np.arange(len(speeds)), rows)
+    position = np.concatenate([v * np.arange(rows) for v in speeds])
+    made = SimpleNamespace(
+        runs=[run(k) for k in range(len(speeds))], run=label, columns={"position": position},
+        t=100.0 + 2.0 * np.arange(len(label)),
+    )  # fmt: skip
+    return cast(Frame, cast(Any, made))
+
+
+@pytest.mark.parametrize(
+    ("speeds", "sessions", "loops", "chosen"),
+    [
+        ((3.0, 1.0, 2.0), "", "", 2),
+        ((3.0, -1.0, -2.0), "", "", 2),
+        ((2.0, 3.0, 1.0), "", "", 0),
+        ((1.0, 3.0, 2.0, 4.0), "", "", 2),  # of those that the others cover the last
+        ((1.0, 3.0, 2.0, 4.0), "", "cc", 1),  # a closed one
+        ((1.0, 3.0, 2.0, 4.0), "", "c", 2),  # which the others cover
+        ((1.0, 3.0, 2.0, 4.0), "aabc", "", 1),  # of a session that has another run
+        ((1.0, 3.0, 2.0, 4.0), "aabc", "occ", 1),
+        ((1.0, 3.0, 2.0, 4.0), "aabc", "ooc", 2),
+    ],
+)
+def test_a_run_whose_speeds_the_others_cover_is_held_out(
+    speeds: tuple[float, ...], sessions: str, loops: str, chosen: int
+) -> None:
+    f = frame(*speeds, sessions=sessions, loops=loops)
+    held, names = choose_held_out(f, [])
+    assert names == [f"r{chosen}"] and (held == (f.run == chosen)).all()
+
+
+def test_runs_that_are_named_are_held_out_however_few_there_are() -> None:
+    for speeds in ((1.0, 2.0), (3.0, 1.0, 2.0, 5.0)):
+        f = frame(*speeds)
+        held, names = choose_held_out(f, ["r0", "r1"])
+        assert names == ["r0", "r1"] and (held == (f.run < 2)).all()
+
+
+def test_of_fewer_than_three_runs_the_ends_are_held_out() -> None:
+    for speeds in ((1.0,), (1.0, 2.0)):
+        f = frame(*speeds, rows=20)
+        held, names = choose_held_out(f, [])
+        assert (held == (np.arange(len(held)) % 20 >= 14)).all()
+        assert names == [f"r{k} from 28 s" for k in range(len(speeds))]

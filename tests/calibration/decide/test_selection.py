@@ -71,6 +71,30 @@ def test_without_and_put_give_what_is_left_and_say_why() -> None:
     assert s.keep([]).held.share == 0.0
 
 
+@pytest.mark.parametrize("scale", [0.1, 1.0, 10.0])
+def test_an_effect_is_worth_the_share_that_it_takes_beside_the_others(scale: float) -> None:
+    """Independent effects of 2 and -1 take 4 and 1 of the mean square, beside the noise."""
+    one = of({"brake_drag": 2.0, "load_friction": -1.0})
+    s = one.on(replace(one.problem, y=scale * one.problem.y))
+    whole = 4.0 + 1.0 + NOISE**2
+    assert s.worth == pytest.approx([4 / whole, 1 / whole], abs=0.05)
+    assert s.fitted_square == pytest.approx((scale * NOISE) ** 2, rel=0.1)
+
+
+def test_where_nothing_is_held_out_or_left_no_effect_is_worth_anything() -> None:
+    s = of({"brake_drag": 2.0})
+    assert s.on(replace(s.problem, held=np.zeros(ROWS, dtype=bool))).worth == [0.0]
+    nothing = np.where(s.problem.held, 0.0, s.problem.y)
+    p = replace(s.problem, y=nothing, base=np.where(s.problem.held[:, None], 0.0, s.problem.base))
+    assert s.on(p).held.before == 0.0 and s.on(p).worth == [0.0]
+
+
+def test_a_selection_that_nothing_was_offered_to_has_looked_at_nothing() -> None:
+    s = Selection.of(problem(np.ones(ROWS)))
+    assert (s.looked_at, s.statistic, s.scores.threshold) == (0, 0.0, 0.0)
+    assert len(s.scores.value) == len(s.scores.surrogate_max) == 0
+
+
 def test_the_same_effects_on_other_rows() -> None:
     s = of({"brake_drag": 2.0})
     p = replace(s.problem, valid=s.problem.valid & (np.arange(ROWS) % 7 != 0))
