@@ -10,8 +10,8 @@ from calibration.names.name import Array, Candidate, Scene, candidate
 def coupling(s: Scene) -> list[Candidate]:
     """The inertia's off-diagonal terms, of every other joint alone and of all together.
 
-    Constant ones, as of an arm that hardly bends; and those of two links whose axes are parallel, whichever is
-    in front (Craig, Introduction to Robotics, chapter 6).
+    They are constant, as of an arm that hardly bends, or those of two links whose axes are parallel.
+    Source: Craig, Introduction to Robotics, chapter 6.
     """
     joints = [name for name in JOINTS if name in s.view.columns]
     if not s.force or not s.view.dynamic:
