@@ -141,6 +141,28 @@ def test_an_interrupted_run_leaves_logs_and_says_so(tmp_path: Path) -> None:
     assert result.summary["steps_completed"] < 3
 
 
+def interrupt(_t_ns: int) -> None:
+    raise KeyboardInterrupt
+
+
+class Stopped(Session):
+    """Interrupted in the middle of its second second."""
+
+    def advance(self, t_ns: int) -> None:
+        if t_ns == 2_000_000_000:
+            self.network.queue.at(1_500_000_000, interrupt)
+        super().advance(t_ns)
+
+
+def test_an_interrupted_run_has_its_traces_until_then(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(runner, "Session", Stopped)
+    result = go(tmp_path, lambda *_: None)
+    assert result.interrupted and result.summary["simulated_s"] == 1.5
+    assert traces.read(tmp_path / "host.parquet", (), 0.0, 9.0)["t_s"][-1] == pytest.approx(1.5, abs=0.11)
+
+
 @pytest.fixture
 def closed(monkeypatch: pytest.MonkeyPatch) -> list[Recorder]:
     """Recorders that were closed."""
