@@ -64,6 +64,8 @@ def test_a_master_is_lost_when_its_time_is_over_and_back_with_its_next_heartbeat
 
 def test_each_has_its_own_time_and_who_is_not_watched_has_none() -> None:
     bench = Bench()
+    bench.at(0, 0x7F)
+    assert bench.queue.next_ns() == 65_535_000_000
     bench.at(0, 3, 0x7F, 4, 0, 5)
     bench.at(65_534)
     assert bench.told == [(100, 3, False)]

@@ -162,7 +162,10 @@ def test_power_begins_a_packet_afresh_and_numbers_go_on() -> None:
     alone.board.power_on(alone.queue.now_ns)
     alone.run(7.0)
     assert [data[3] for data in packets] == [0, 1]
-    assert len(PacketDecoder([POWER_DRIVES]).feed(packets[1])) == 1
+    (packet,) = PacketDecoder([POWER_DRIVES]).feed(packets[1])
+    own = [tuple(frame.data[1:]) for _, frame in alone.told()]
+    assert list(packet.rows) == own[28:53]  # four a second, of seven seconds, went before
+    assert packet.stamp == 10_000 * 7.5  # the first of them; a boot of 300 ms ends between two
     alone.board.packets.sequence = 255
     alone.run(6.3)
     alone.run(6.3)
@@ -204,6 +207,31 @@ def test_a_period_divides_the_second_of_the_heartbeat(tmp_path: Path, period_ms:
     words = f"{kind.dbc}: periods must be multiples of the shortest, which divides 1 s"
     with pytest.raises(ValueError, match=re.escape(words)):
         made(kind)
+
+
+def test_a_board_without_supply_is_as_after_power_up() -> None:
+    wire = Wire(EventQueue())
+    place = Place(
+        name="POWER_DRIVES", device_type=POWER_DRIVES, queue=wire.queue, wire=wire,
+        oscillator=Oscillator(0.0, 0),
+    )  # fmt: skip
+    board = PowerBoard(place, {})
+    assert (board.relays, board.wrong, board.on) == (255, False, False)
+
+
+def test_each_frame_has_its_own_period(tmp_path: Path) -> None:
+    text = WEATHER.dbc.read_text(encoding="utf-8").replace("BO_ 512 1000;", "BO_ 512 500;")
+    slow = 'BO_ 768 SLOW: 8 NODE\n SG_ Count : 16|8@1+ (1,0) [0|255] "" GATEWAY\n\n'
+    text = text.replace("BO_ 512 WEATHER", f"{slow}BO_ 512 WEATHER")
+    text = text.replace("BO_ 512 500;", 'BO_ 512 500;\nBA_ "GenMsgCycleTime" BO_ 768 1000;')
+    (tmp_path / "both.dbc").write_text(text, encoding="utf-8")
+    board = made(replace(WEATHER, name="BOTH", dbc=tmp_path / "both.dbc"))
+    sent: list[int] = []
+    partner = board.port._wire.attach("partner")
+    partner.on_receive = lambda _t, frame: sent.append(frame.identifier)
+    board.begin()
+    board.queue.run_until(4 * SECOND + 100 * MS)
+    assert (sent.count(0x200 + NUMBER), sent.count(0x300 + NUMBER)) == (8, 4)
 
 
 def test_a_board_writes_its_own_measure() -> None:

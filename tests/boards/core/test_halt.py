@@ -128,3 +128,19 @@ def test_without_a_timer_nothing_is_due() -> None:
     board.power_off(0)
     queue.run_until(20 * MS)
     assert Halt(board, 20 * MS).due_ns is None
+
+
+def test_an_interrupt_that_comes_meanwhile_waits_and_is_served_at_once(
+    running: tuple[EventQueue, Idle, list[Frame]],
+) -> None:
+    queue, board, frames = running
+    halt = Halt(board, queue.now_ns)
+    board._receive(12 * MS, PING)
+    queue.run_until(14 * MS - 100 * US)
+    line = board.cpu.lines["can"]
+    assert (line.runs, line.pending) == (0, True)
+    halt.resume(queue.now_ns)
+    queue.run_until(15 * MS)  # its 1010 us are over, and the next tick has not come
+    assert (line.runs, line.pending) == (1, False)
+    queue.run_until(16 * MS)
+    assert sum(frame.identifier == 0x100 + DEVICE for frame in frames) == 1

@@ -74,7 +74,7 @@ def test_a_level_line_loses_nothing() -> None:
 
 
 def test_the_first_row_must_be_the_most_urgent() -> None:
-    with pytest.raises(ValueError, match="highest priority"):
+    with pytest.raises(ValueError, match="interrupt table: a must have the highest priority"):
         InterruptController(EventQueue(), FCY_HZ, (Source("a", 1, 0, 1), Source("b", 1, 0, 1)))
 
 

@@ -79,6 +79,16 @@ def test_it_stops_within_its_tolerance(alone: Alone[DomeBoard]) -> None:
         assert alone.writes() == [("turn", direction)]
 
 
+@pytest.mark.parametrize(("encoder", "target"), [(3590, 100), (10, 35900)])
+def test_a_tolerance_reaches_over_north(alone: Alone[DomeBoard], encoder: int, target: int) -> None:
+    """Two degrees from 359 to 1."""
+    at(alone, encoder=encoder)
+    for tolerance, moving in ((200, 0), (199, 1)):
+        alone.board.values["tolerance_centidegrees"].value = tolerance
+        alone.command("DOME_GOTO", target)
+        assert at(alone)["Moving"] == moving
+
+
 def test_outputs_change_at_the_end_of_the_routine(alone: Alone[DomeBoard]) -> None:
     alone.command("DOME_GOTO", 9000)
     at(alone)
@@ -117,6 +127,7 @@ def test_contactors_drop_out_without_supply(alone: Alone[DomeBoard]) -> None:
     alone.command("DOME_SHUTTER", 1)
     at(alone, shutter=0.5)
     station(alone, MAST, False)
+    alone.board.values["tolerance_centidegrees"].value = 70
     alone.writes()
     alone.board.power_off(alone.queue.now_ns)
     assert alone.writes() == [("turn", 0), ("slide", 0)]
@@ -125,6 +136,7 @@ def test_contactors_drop_out_without_supply(alone: Alone[DomeBoard]) -> None:
     said = alone.said()
     assert (said["Moving"], said["ShutterMoving"], said["Target"]) == (0, 0, 0)
     assert alone.board.heard == {} and not alone.board.seeking
+    assert alone.board.values["tolerance_centidegrees"].value == 50
 
 
 @pytest.mark.parametrize("identifier", [MAST, INSIDE])

@@ -80,6 +80,7 @@ def test_without_supply_every_relay_falls_back_closed(alone: Alone[PowerBoard]) 
 
 def test_after_power_up_all_is_closed_and_nothing_is_wrong(alone: Alone[PowerBoard]) -> None:
     alone.pins["voltage"] = 3.0
+    alone.board.values["overcurrent_ma"].value = 1
     alone.command("RELAY", 5, 0)
     alone.run(1.0)
     assert Health.FAULT in alone.board.health()
@@ -87,8 +88,5 @@ def test_after_power_up_all_is_closed_and_nothing_is_wrong(alone: Alone[PowerBoa
     alone.board.power_off(alone.queue.now_ns)
     alone.board.power_on(alone.queue.now_ns)
     alone.queue.run_until(alone.queue.now_ns + SECOND // 3)
-    assert (alone.board.relays, alone.board.wrong, Health.FAULT in alone.board.health()) == (
-        255,
-        False,
-        False,
-    )
+    assert (alone.board.relays, alone.board.wrong, alone.board.health()) == (255, False, Health(0))
+    assert alone.board.values["overcurrent_ma"].value == 30_000

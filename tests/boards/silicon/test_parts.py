@@ -6,7 +6,7 @@ from boards.silicon.adc import CurrentAdc, VoltageAdc, convert
 from boards.silicon.can import CanController
 from boards.silicon.hid import HidEndpoint, next_frame_ns
 from boards.silicon.pwm import FCY_HZ, ONE, MotorPwm
-from boards.silicon.stepper import StepperDriver
+from boards.silicon.stepper import HALF_STEPS, StepperDriver
 from boards.silicon.uart import BUFFERS, Uart
 from bus.can import Frame, Wire
 from bus.time import EventQueue
@@ -54,7 +54,8 @@ class Line:
 def test_a_byte_is_ten_bits_at_the_usual_rate() -> None:
     uart = Uart(EventQueue())
     assert (uart.baud, BUFFERS, uart.dropped) == (115_200, 2, 0)
-    assert [uart.duration_ns(length) for length in (0, 1, 1152)] == [0, BYTE_NS, 100_000_000]
+    lengths = (0, 1, 1152, 11_520_000)
+    assert [uart.duration_ns(length) for length in lengths] == [0, BYTE_NS, 10**8, 10**12]
 
 
 def test_packets_leave_one_after_the_other_and_two_at_most_wait() -> None:
@@ -165,12 +166,19 @@ def test_fractions_of_a_step_are_spread_until_whole_steps_are_written() -> None:
     bridge.pwm.write_spread(100_000, 500 * ONE + half, 1000 * ONE)
     assert (bridge.pwm.pdc_a, bridge.pwm.pdc_b, bridge.pwm.spreading) == (500, 1000, True)
     bridge.pwm.write_spread(100_001, 1001 * ONE, 999 * ONE + half)
+    bridge.pwm.write_spread(110_000, 0, 1000 * ONE + 1)
+    bridge.pwm.write_spread(110_000, 1001 * ONE, 999 * ONE + half)
     bridge.pwm.write(200_001, 1001, 999)  # other duties than the fractions had
     bridge.pwm.write(200_001, 1001, 999)
     assert bridge.driven == [
-        (100_000, 0.5005, 1.0), (200_000, 1.0, 0.9995), (300_000, 1.0, 0.999),
+        (100_000, 0.5005, 1.0), (200_000, 1.0, 0.9995), (200_000, 0.0, 1.0), (200_000, 1.0, 0.9995),
+        (300_000, 1.0, 0.999),
     ]  # fmt: skip
     assert bridge.pwm.spreading is False
+
+
+def test_a_half_step_is_full_current_in_a_coil_or_none() -> None:
+    assert {abs(current) for coils in HALF_STEPS for current in coils} == {0, 1}
 
 
 def test_a_stepper_is_free_at_first_and_comes_round_in_eight_half_steps() -> None:
