@@ -70,7 +70,7 @@ class Pacer:
     def _restart(self) -> None:
         """The schedule begins here and now."""
         self._start_ns, self._start_s = self.queue.now_ns, perf_counter()
-        self._slice_ns = max(1, round(SLICE_S * self._speed * _NS_PER_S))
+        self._slice_ns = round(SLICE_S * self._speed * _NS_PER_S)
 
     def due_s(self, t_ns: int) -> float:
         """When simulated time `t_ns` is due, on the clock of `perf_counter`."""

@@ -71,7 +71,7 @@ def _told(read: Callable[[Path], Iterator[Entry]], path: Path) -> Generator[Entr
 def _frames(path: Path) -> Iterator[Entry]:
     """Every frame by its name in the DBC; one that is not in it as its bytes."""
     import can
-    from cantools.database import Database, load_file
+    from cantools.database import Database, DecodeError, load_file
 
     database = load_file(DBC_PATH, strict=True)
     assert isinstance(database, Database)
@@ -87,9 +87,9 @@ def _frames(path: Path) -> Iterator[Entry]:
     with _text(path) as text, can.CanutilsLogReader(text) as reader:
         for frame in reader:
             source, values = raw, {"identifier": f"{frame.arbitration_id:X}", "data": bytes(frame.data).hex()}
-            if frame.arbitration_id in known and not frame.is_remote_frame:
+            if frame.arbitration_id in known and not (frame.is_remote_frame or frame.is_extended_id):
                 message, its = known[frame.arbitration_id]
-                with suppress(ValueError, KeyError):  # cantools' errors: too short, an opcode that is none
+                with suppress(DecodeError):  # too short, an opcode that is none
                     values, source = message.decode(bytes(frame.data), decode_choices=False), its
             yield Entry(round(frame.timestamp * 1e6) * 1000, source, values)
 

@@ -2,6 +2,7 @@
 
 import sys
 import tempfile
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
@@ -31,9 +32,14 @@ def digest() -> str:
         return session.recorder.digest()
 
 
-if __name__ == "__main__":
-    if len(sys.argv) > 1:
+def main(library: Sequence[str]) -> None:
+    """Print the digest; with a name of a compiled library, that is used."""
+    if library:
         from scenarios.native.finder import use
 
-        use(Path(sys.argv[1]))
+        use(Path(library[0]))
     print(digest())
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

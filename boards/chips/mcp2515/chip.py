@@ -79,8 +79,7 @@ class Mcp2515:
         """RESET instruction, RESET pin, power-up: configuration mode, registers as in the data sheet."""
         memory = self._memory
         memory[:] = bytes(at.SIZE)
-        for address, value in at.RESET_VALUES.items():
-            memory[address] = value
+        memory[at.CANCTRL] = at.CANCTRL_AT_RESET
         self.receiver.refilter()
         self._enter(Mode.CONFIGURATION)
         self._update_pin()

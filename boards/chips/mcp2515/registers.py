@@ -56,8 +56,11 @@ EWARN, RXWAR, TXWAR, RXEP, TXEP, TXBO, RX0OVR, RX1OVR = (1 << k for k in range(8
 """EFLG."""
 WARNING_AT, PASSIVE_ABOVE = 96, 127
 
-RESET_VALUES = {CANCTRL: 0x87, CANSTAT: 0x80}
-"""All others are 0 (message buffers and filters are undefined in the data sheet; 0 here, ASSUMPTION)."""
+CANCTRL_AT_RESET = 0x87
+"""CANSTAT follows the mode, all others are 0.
+
+Message buffers and filters are undefined in the data sheet; 0 here (ASSUMPTION).
+"""
 
 _IDENTIFIER = (0xFF, 0xEB, 0xFF, 0xFF)
 """Writable bits of SIDH, SIDL, EID8, EID0 in filters and transmit buffers."""
@@ -77,8 +80,7 @@ def _writable() -> bytes:
     mask[BFPCTRL], mask[TXRTSCTRL] = 0x3F, 0x07
     mask[CNF3], mask[CNF2], mask[CNF1] = 0xC7, 0xFF, 0xFF
     mask[CANINTE], mask[CANINTF], mask[EFLG] = 0xFF, 0xFF, RX0OVR | RX1OVR
-    for row in range(0, SIZE, 0x10):
-        mask[row | CANCTRL] = 0xFF
+    mask[CANCTRL] = 0xFF
     return bytes(mask)
 
 
@@ -90,10 +92,9 @@ CONFIGURATION_ONLY = frozenset(
 """Written in configuration mode only; filters and masks read as 0 in any other."""
 HIDDEN = CONFIGURATION_ONLY - {CNF1, CNF2, CNF3, TXRTSCTRL}
 BIT_MODIFIABLE = frozenset(
-    [BFPCTRL, TXRTSCTRL, CNF1, CNF2, CNF3, CANINTE, CANINTF, EFLG, *TXBCTRL, *RXBCTRL]
-    + [row | CANCTRL for row in range(0, SIZE, 0x10)]
+    [BFPCTRL, TXRTSCTRL, CANCTRL, CNF1, CNF2, CNF3, CANINTE, CANINTF, EFLG, *TXBCTRL, *RXBCTRL]
 )
-"""BIT MODIFY anywhere else writes the whole byte."""
+"""BIT MODIFY anywhere else writes the whole byte. Addresses here and in WRITABLE are canonical."""
 
 
 def canonical(address: int) -> int:

@@ -3,7 +3,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from boards.core import OK, Answer, Parameter, ParameterTable, answer
-from boards.core.commands import Command
+from boards.core.commands import Command, commands, kept
 from bus.protocol import Opcode, Result, pack_command
 
 DEVICE = 0x11
@@ -65,3 +65,41 @@ def test_parameters_keep_their_bounds() -> None:
     assert table.set(3, 11) == (Result.OUT_OF_RANGE, 3, 10)
     assert table.get(4).result == table.set(4, 0).result == Result.OUT_OF_RANGE
     assert kept == [10]
+
+
+def test_a_parameter_is_refused_with_its_number_and_the_value_in_force() -> None:
+    class Owner:
+        gain = 7
+
+    owner = Owner()
+    rows = [kept(9, "gain", (-2, 8), owner, "gain"), Parameter(3, "x", 0, 0, lambda: 0, lambda _: None)]
+    table = ParameterTable(rows)
+    assert [row.number for row in table.rows()] == [3, 9]
+    assert table.rows()[1] is rows[0]
+    assert table.get(9) == (Result.OK, 9, 7)
+    for value, answered in ((-2, -2), (8, 8), (-3, 8), (9, 8)):
+        result = Result.OK if value == answered else Result.OUT_OF_RANGE
+        assert table.set(9, value) == (result, 9, answered)
+    assert owner.gain == 8
+    assert table.get(4) == (Result.OUT_OF_RANGE, 4, 0)
+    assert table.set(4, 17) == (Result.OUT_OF_RANGE, 4, 17)
+    assert ParameterTable().rows() == ()
+
+
+def test_a_handler_gets_the_time_and_the_six_bytes_behind_the_opcode() -> None:
+    seen: list[tuple[int, bytes]] = []
+
+    def noting(t_ns: int, arguments: bytes) -> Answer:
+        seen.append((t_ns, arguments))
+        return OK
+
+    assert answer(DEVICE, {0x10: noting}, 77, bytes([DEVICE, 0x10, 1, 2, 3, 4, 5, 6])) == (0x10, OK)
+    assert seen == [(77, bytes([1, 2, 3, 4, 5, 6]))]
+    assert answer(DEVICE, {}, 0, bytes([DEVICE, 0x10]))[0] == 0x10
+
+
+def test_a_method_may_answer_for_itself() -> None:
+    refused = Answer(Result.NOT_ALLOWED)
+    table = commands({Opcode.STOP: lambda _t_ns, *_: refused, Opcode.POWER: lambda _t_ns, *_: None})
+    assert [table[opcode](0, bytes(6)) for opcode in (Opcode.STOP, Opcode.POWER)] == [refused, OK]
+    assert Answer(Result.OK) == (Result.OK, 0, 0)

@@ -148,3 +148,91 @@ def test_a_line_is_over_with_its_return_whatever_follows_and_however_it_comes(le
         desk.say(b"")
         heard.append(desk.heard)
     assert heard[0] == heard[1] == heard[2]
+
+
+BIT_NS = 1e9 / 115_200
+
+
+def test_a_new_port_is_closed_and_has_lost_nothing() -> None:
+    port = Desk().port
+    assert (port.baud, port.lost, port.opened, port.tapped) == (115_200, 0, False, False)
+    assert (line_of(Frame(0x0D1, b"\x0a")), frame_of(b"t0D110A")) == (b"t0D110A\r", Frame(0x0D1, b"\x0a"))
+
+
+@pytest.mark.parametrize("line", [b"", b"S8", b"s1234", b"W0", b"m", b"M", b"Z0", b"X1", b"F"])
+def test_what_sets_up_an_adapter_is_done_without_doing_anything(line: bytes) -> None:
+    desk = Desk()
+    assert desk.say(line + b"\r") == b"\r"
+    assert not desk.port.opened
+
+
+def test_what_comes_before_the_line_has_been_read_waits_in_one_buffer() -> None:
+    desk = Desk()
+    desk.port.write(0, b"S" * 200)
+    desk.port.write(0, b"S" * 100)  # 56 find room
+    assert desk.port.lost == 44
+    desk.say(b"", 40)
+    desk.say(b"\r", 40)
+    assert desk.say(b"V\r") == b"V1013\r"
+    desk.port.write(desk.queue.now_ns, b"S" * 256)
+    assert desk.port.lost == 44
+    desk.port.write(desk.queue.now_ns, b"S")
+    assert desk.port.lost == 45
+
+
+def test_bytes_that_follow_at_once_or_later_are_through_when_their_bits_are() -> None:
+    desk = Desk()
+    desk.port.write(0, b"S")
+    desk.port.write(0, b"S\r")  # on the heels of the first
+    desk.say(b"", 30)
+    assert desk.heard[0][0] == pytest.approx(4 * 10 * BIT_NS, abs=2)  # three in, one out
+    desk.heard.clear()
+    start_ns = desk.queue.now_ns
+    desk.say(b"V\r")
+    assert desk.heard[0][0] - start_ns == pytest.approx((2 + 6) * 10 * BIT_NS, abs=2)
+
+
+def test_an_hour_of_bytes_is_an_hour() -> None:
+    assert Desk().port._duration_ns(3600 * 11_520) == 3600 * 10**9
+
+
+def test_what_goes_out_has_a_buffer_too() -> None:
+    """256 bytes: 42 answers of six to `V`, and one byte of four more."""
+    desk = Desk()
+    for _ in range(43):
+        desk.port._say(0, b"V1013\r")
+    assert desk.port.lost == 6
+    desk.port._say(0, b"1234")
+    assert desk.port.lost == 6  # just full
+    desk.port._say(0, b"x")
+    desk.port._say(0, b"y")
+    assert desk.port.lost == 8
+    assert desk.say(b"", 40) == b"V1013\r" * 42 + b"1234"
+    ends = [t_ns for t_ns, _ in desk.heard]
+    assert ends[0] == pytest.approx(6 * 10 * BIT_NS, abs=1)
+    assert ends[-1] == pytest.approx(256 * 10 * BIT_NS, abs=50)
+
+
+def test_a_port_that_is_opened_twice_says_a_frame_once() -> None:
+    desk = Desk()
+    desk.say(b"O\rC\rO\rO\r")
+    out = desk.say(b"", 1100)
+    assert out.count(b"t751") == 1
+
+
+def test_half_a_line_is_forgotten_with_the_supply() -> None:
+    desk = Desk()
+    desk.say(b"V")
+    desk.board.power_off(desk.queue.now_ns)
+    desk.say(b"1")
+    desk.board.power_on(desk.queue.now_ns)
+    assert desk.say(b"", 400) == b""
+    assert desk.say(b"\r") == b"\r"
+
+
+def test_nobody_needs_to_listen_to_a_port() -> None:
+    desk = Desk()
+    desk.port.sink = None
+    desk.port.write(0, b"V\r")
+    desk.queue.run_until(10 * MS)
+    assert desk.port.out == []

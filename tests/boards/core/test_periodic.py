@@ -100,3 +100,28 @@ def test_B9_a_board_knows_the_time_from_its_own_timer_only(ppm: float) -> None:
         10_000 * MS * (1 + ppm * 1e-6), abs=5 * MS * abs(ppm) * 1e-6 + 2
     )
     assert board.clock_ns(queue.now_ns) // 1_000_000_000 == (20 if ppm >= 0 else 19)
+
+
+def test_a_clock_is_right_before_the_first_tick_and_a_board_that_is_off_enters_nothing() -> None:
+    queue, board, _ = bench(tick_cycles=100)
+    assert board.clock_ns(5 * MS + 10_000) == 5 * MS  # the first routine begins 10 us after its fire
+    queue.run_until(6 * MS)
+    assert (board.ticks, board.clock_ns(5 * MS + 10_000)) == (1, 5 * MS)
+    board.power_off(queue.now_ns)
+    assert board.enter(queue.now_ns) == 0
+    assert board.ticks == 1
+
+
+def test_a_tick_takes_its_time_from_a_command_that_is_being_served() -> None:
+    """A command of 1010 us that comes at 4.5 ms is through at 5.51 ms, and 100 us later with a tick in it."""
+    queue, board, frames = bench(tick_cycles=100)
+    queue.run_until(4 * MS + 500_000)
+    board._receive(queue.now_ns, Frame(0x080 + DEVICE, pack_command(DEVICE, Opcode.PING)))
+    line = board.cpu.lines["can"]
+    queue.run_until(5 * MS)
+    assert line.end_ns == 5 * MS + 510_000
+    queue.run_until(5 * MS + 600_000)
+    assert (line.end_ns, line.runs) == (5 * MS + 610_000, 0)
+    queue.run_until(6 * MS)
+    assert line.runs == 1
+    assert sum(frame.identifier == 0x100 + DEVICE for frame in frames) == 1

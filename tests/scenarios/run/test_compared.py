@@ -82,18 +82,65 @@ def test_a_run_whose_trace_has_a_hole_there_is_left_out_alone(outcomes: dict[str
     assert [gain.run for gain in compared._gains(outcomes, "ra")] == ["before", "after"]
 
 
-def test_lines_and_plot_name_all_three(outcomes: dict[str, Outcome]) -> None:
+def test_lines_name_all_three(outcomes: dict[str, Outcome]) -> None:
     gains = list(compared._gains(outcomes, "ra"))
     text = list(compared.lines(gains))
     assert text[0].startswith(
         "held one, without the table: true rate peak 1.200, rms 0.849 arcsec/s; angle ±"
     )
-    assert ["20% too small and 0.2 rad off" in line for line in text].count(True) == 1
-    figure = compared.draw(gains)
-    views = figure.axes
+    assert ["with it 20% too small and 0.2 rad off" in line for line in text].count(True) == 1
+
+
+def test_a_plot_has_a_row_for_each_run_on_one_scale(outcomes: dict[str, Outcome]) -> None:
+    gains = list(compared._gains(outcomes, "ra"))
+    shorter = gains[0]._replace(step="short one", t_s=gains[0].t_s[:50])
+    views = compared.draw([shorter, *gains]).axes
     assert len(views) == 6
-    reach = {view.get_ylim() for view in views[::2]}
-    assert reach == {(-1.1 * gains[0].peak, 1.1 * gains[0].peak)}  # one scale: smaller has to look smaller
+    places = [view.get_subplotspec().get_geometry() for view in views]  # type: ignore[union-attr]
+    assert places == [(3, 2, place, place) for place in range(6)]
+    top = 1.1 * gains[0].peak, 1.1 * float(np.abs(gains[0].path).max())
+    for view, gain, column in zip(views, np.repeat(np.arange(3), 2), [0, 1] * 3, strict=True):
+        assert view.get_ylim() == (-top[column], top[column])  # smaller has to look smaller
+        (line,) = view.get_lines()
+        drawn = np.asarray(line.get_ydata())
+        values = (gains[gain].rate, gains[gain].path)[column]
+        assert (drawn.max(), drawn.min()) == (values.max(), values.min())
+        assert view.get_xlabel() == ("time, s" if gain == 2 else "")
+        assert view.get_ylabel() == ("arcsec/s", "arcsec")[column]
+    words = [view.get_title(loc="left") for view in views]
+    assert words[0] == "without the table: rate, peak 1.200"
+    assert words[1] == f"without the table: angle, ±{gains[0].angle:.3f}"
+    colours = [view.get_lines()[0].get_color() for view in views]
+    assert len(set(colours)) == 3 and colours[::2] == colours[1::2]
+
+
+def test_time_counts_from_the_settling_and_an_angle_from_its_middle(outcomes: dict[str, Outcome]) -> None:
+    gain = next(compared._gains(outcomes, "ra"))
+    assert gain.t_s[0] == pytest.approx(0.0, abs=0.011)
+    assert gain.t_s[-1] == pytest.approx(100.0, abs=0.011)  # 130 s less 30 s of settling
+    assert gain.path.mean() == pytest.approx(0.0, abs=1e-9)
+    assert (gain.path.max(), gain.path.min()) == pytest.approx((gain.angle, -gain.angle), rel=0.02)
+
+
+@pytest.mark.parametrize(("seconds", "count"), [(39.9, 0), (40.0, 3)])
+def test_ten_seconds_behind_the_settling_are_enough(
+    outcomes: dict[str, Outcome], seconds: float, count: int
+) -> None:
+    for each in outcomes.values():
+        each.records[1] = Record(each.records[1].step, 20.0, 20.0 + seconds)
+    assert len(list(compared._gains(outcomes, "ra"))) == count
+
+
+def test_a_drift_is_no_swing(tmp_path: Path) -> None:
+    """A rate that is off by a constant is told by its peak, and adds up to no angle."""
+    steady = outcome(tmp_path / "steady", 0.0)
+    rows = np.arange(0.0, 152.0, 0.01)
+    trace = Trace(tmp_path / "steady" / "truth-ra.parquet", ("t_s", "angle", "rate"), {})
+    trace.append(np.stack([rows, rows * 0.0, np.full_like(rows, 18.0 / ARCSEC_PER_RAD)], axis=1))
+    trace.close()
+    for gain in compared._gains(dict.fromkeys(compared.LABELS, steady), "ra"):
+        assert (gain.peak, gain.rms) == pytest.approx((3.0, 3.0))
+        assert gain.angle == pytest.approx(0.0, abs=1e-9)
 
 
 @pytest.fixture

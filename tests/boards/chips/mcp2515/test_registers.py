@@ -4,6 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from boards.chips.mcp2515 import registers
 from tests.boards.chips.mcp2515.bench import CONFIG, LISTEN, LOOPBACK, NORMAL, Bench
 
 RESET = {0x0D: 0x38, 0x0E: 0x80, 0x0F: 0x87}
@@ -58,6 +59,12 @@ def test_every_register_keeps_the_bits_it_has(address: int, value: int) -> None:
     assert bench.read(address) == expected
 
 
+def test_there_is_a_mask_for_each_address_and_no_more() -> None:
+    below = [a for a in range(0x80) if a & 0x0F < 0x0E]  # the last two columns repeat CANSTAT and CANCTRL
+    assert len(registers.WRITABLE) == 0x80
+    assert [registers.WRITABLE[a] for a in below] == [writable(a) for a in below]
+
+
 def test_canctrl_is_written_at_every_mirror() -> None:
     for row in range(8):
         bench = Bench()
@@ -101,6 +108,14 @@ def test_filters_masks_and_timing_are_for_configuration_mode_only() -> None:
         assert bench.read(address) == (0 if hidden else told[address])
     bench.mode(CONFIG)
     assert {address: bench.read(address) for address in locked} == told
+
+
+def test_pins_interrupts_and_transmit_buffers_are_for_any_mode() -> None:
+    bench = Bench().start(LISTEN)
+    for address in (0x0C, 0x2B, 0x2C, 0x31, 0x41, 0x51):
+        for value in (0x00, 0x15, 0x00):
+            bench.write(address, value)
+            assert bench.read(address) == value
 
 
 def test_read_and_write_go_on_to_the_next_address_and_wrap() -> None:
