@@ -80,11 +80,16 @@ class Volts:
     floor_from: str = ""
 
 
+def has_volts(view: View) -> bool:
+    """Whether a log has a motor's current and its volts, or its duty."""
+    return "current" in view.columns and bool({"voltage", "duty"} & set(view.columns))
+
+
 def volts_balance(view: View, balance: Problem) -> Volts | None:
     """The electrical balance on the rows of another one; None where the log has no volts or no current."""
-    columns, i = view.columns, view.columns.get("current")
-    if i is None or not {"voltage", "duty"} & set(columns):
+    if not has_volts(view):
         return None
+    columns, i = view.columns, view.columns["current"]
     volts, duty, supply = columns.get("voltage"), np.zeros(0), np.zeros(0)
     if volts is None:
         duty, supply = columns["duty"], columns.get("supply", np.full(len(i), view.rig.supply_V or 0.0))

@@ -22,6 +22,7 @@ from calibration.inputs.text import Heading, Long, check_file, heading, load_utf
 
 _UNIT = re.compile(r"\s*[\[(]\s*([^\])]*?)\s*[\])]\s*$")
 _PART = re.compile(r"[^\W\d_]+")
+_RATE = re.compile(r"_([a-z]+)_(?:per_)?(s2?)$")
 _HUMP = re.compile(r"(?<=[a-z])(?=[A-Z])")
 
 SHORT = 2  # characters of a name that is a unit by itself: longer than m, s, in. ASSUMPTION
@@ -132,6 +133,8 @@ def said(name: str | int) -> Said:
     ends = [p.lower() for p in _PART.findall(name)]
     last = ends[-1] if ends and (len(ends) > 1 or len(ends[0]) > SHORT) else ""
     last = "" if last in words["asked"] else last
+    if (rate := _RATE.search(name.lower())) and (per := "/".join(rate.groups())) in units:
+        last = per  # speed_deg_s
     hint, unit, scale = units.get(inside.lower() or last, ("", inside, 1.0))
     told = [channel for channel, known in words.items() if set(parts) & set(known)]
     told = [channel for channel in told if channel not in ("count", "label") or len(parts) == 1]

@@ -10,6 +10,7 @@ from calibration.balances.balance import problem_of
 from calibration.balances.problem import Problem
 from calibration.balances.thresholds import FEWEST_ROWS
 from calibration.balances.view import View, view_of
+from calibration.balances.volts import has_volts
 from calibration.decide.thresholds import STILL_MISSING
 from calibration.errors import CalibrationInputError
 from calibration.finding import UNKNOWN
@@ -20,7 +21,7 @@ from calibration.inputs.run import Run
 from calibration.look.controllerlaw import look_at_law
 from calibration.look.forces import look_at_forces
 from calibration.look.looked import Balance, Looked, Options, unnamed_where_missing
-from calibration.look.volts import look_at_volts
+from calibration.look.volts import FEW_VOLTS, look_at_volts
 from calibration.names.channel_delay import against_position, late_column
 from calibration.names.columns import repairs_found
 
@@ -51,6 +52,7 @@ def look_at_response(drive: Drive, rig: Rig, options: Options) -> Looked:
     law = look_at_law(view, problem)
     tell("voltage: winding and back-EMF")
     electric = look_at_volts(view, problem)
+    short = [FEW_VOLTS] if electric is None and has_volts(view) else []
     effects = repairs_found(records, ("effort",) if law is not None and law.findings else ())
     if agreement is not None and agreement.late:
         note = against_position(agreement.channel, agreement.delay_s)
@@ -83,7 +85,7 @@ def look_at_response(drive: Drive, rig: Rig, options: Options) -> Looked:
         rows=_velocity(agreement),
         held_out=held_out,
         notes=[*start, *_gaps(records), *(note for kind, note in repairs if kind not in REMARKED)],
-        remarks=[*(note for kind, note in repairs if kind in REMARKED), *strange, *scaled],
+        remarks=[*(note for kind, note in repairs if kind in REMARKED), *strange, *scaled, *short],
     )
 
 

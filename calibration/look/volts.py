@@ -32,6 +32,7 @@ SURE_CONSTANT = 0.1
 # standard errors of the torque constant, beyond which volts show a change: five, of an onset that leaves at
 # least 4 % of the rows, which tell a fifth as much. ASSUMPTION
 SHOWN = 25.0
+FEW_VOLTS = f"volts were not looked at: fewer than {FEWEST_ROWS} rows; a smaller `smooth_s` leaves more"
 DENIED = "back EMF would show it, and does not"
 
 

@@ -204,6 +204,8 @@ def test_what_no_rig_file_can_be_drafted_of_says_so(tmp_path: Path, text: str, s
         ("rpm", "velocity", "turn/s", 1 / 60, False),
         ("tau_des", "force", "", 1.0, True),
         ("Y_id{*}(1,:)", "", "", 1.0, False),
+        ("feedback_deg_s", "velocity", "deg/s", 1.0, False),
+        ("acc_m_s2", "acceleration", "m/s2", 1.0, False),
     ],
 )
 def test_what_a_name_says(name: str, channel: str, unit: str, scale: float, asked: bool) -> None:
