@@ -14,8 +14,8 @@ from calibration.statistics.tails import student_reach
 
 #: term of a channel's base that takes up a lag
 TERM = {"K": "tachometer_delay", "S": "velocity_delay", "T": "current_delay", "E": "electrical_lag"}
-#: s, that term of encoders on a sound log
-SOUND = {"K": 0.0, "S": -limits.WINDOW_DELAY_S}
+#: s, least and most of that term on a sound log, where it is not zero
+SOUND = {"S": (-limits.WINDOW_DELAY_S, -limits.WINDOW_DELAY_S), "E": limits.SOUND_VOLTS_LAG_S}
 SOUND_MIDDLE_S = sum(limits.SOUND_VOLTS_LAG_S) / 2  # s, of the volts. arithmetic
 REACH = student_reach(limits.LAG_FREEDOM)
 Selections = Mapping[str, Selection]
@@ -64,7 +64,7 @@ def _of_encoders(selections: Selections, declared: Declared) -> Late | None:
         if s is None or s.problem.blocks < limits.FEWEST_BLOCKS:
             continue
         value, reach = _lag(s, key)
-        delay = SOUND[key] - value
+        delay = SOUND.get(key, (0.0, 0.0))[0] - value
         sure = abs(delay) > max(least, limits.LAG_OVER_ERROR * reach) and reach < limits.SURE_LAG_S
         if sure and _matters(s, key):
             late[key] = Late(column=column, delay=delay, reach=reach)
