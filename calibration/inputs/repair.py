@@ -72,6 +72,8 @@ def counter_length(x: Array) -> float:
     jumps = np.abs(step) > max(0.5 * span, 4 * usual)
     if span <= 0 or not jumps.any() or jumps.mean() > limits.MOST_JUMPS:
         return 0.0
+    if len(np.unique(x)) < limits.FEWEST_LEVELS:  # a switch
+        return 0.0
     size = float(np.median(np.abs(step[jumps])))
     lengths = (*WORDS, 360.0) if np.allclose(x, np.round(x)) else CIRCLES
     length = min((w for w in lengths if w >= span * 0.999), key=lambda w: abs(w - size), default=0.0)
@@ -84,7 +86,9 @@ def counter_length(x: Array) -> float:
 def _is_counter(x: Array, step: Array, jumps: Mask, length: float) -> bool:
     """Whether jumps are a counter's and not the column's own. A counter jumps by its length less what moves
     in a row. Or the column uses it from end to end, and then a real step may fall on a wrap."""
-    moved = limits.MOVED_TIMES * float(np.quantile(np.abs(step[~jumps]), 0.99)) + 2.0 * _least_step(step)
+    moved = limits.MOVED_TIMES * float(np.quantile(np.abs(step[~jumps]), 0.99)) + 2.0 * _least_step(
+        step[~jumps]
+    )
     near = np.abs(np.abs(step[jumps]) - length) <= min(moved, limits.NEAR_LENGTH * length)
     whole = length in WORDS and np.ptp(x) >= length - 1 - moved
     return bool(np.mean(near) >= limits.MOST_JUMPS_WHOLE or whole)

@@ -182,3 +182,13 @@ def test_a_supply_that_breaks_down_is_no_counter(tmp_path: Path) -> None:
     repair(r, load_rig(path))
     assert np.array_equal(r.columns["supply"], volts)
     assert not r.repairs
+
+
+@pytest.mark.parametrize("top", [250.0, 255.0, 300.0])
+def test_an_effort_that_is_switched_on_and_off_is_no_counter(tmp_path: Path, top: float) -> None:
+    """All of an eight-bit converter's range, or about a circle's degrees."""
+    r = made(8)
+    switched = np.where(np.arange(ROWS) // 100 % 2, top, 0.0)
+    r.columns["effort"] = switched.copy()
+    repair(r, rig(tmp_path))
+    assert np.array_equal(r.columns["effort"], switched) and not r.repairs

@@ -331,7 +331,7 @@ def test_only_the_harmonics_of_a_list_are_looked_for(tmp_path: Path) -> None:
             COLUMNS.replace("column: x, ", ""),
             "position: 'column' is missing; without one give files",
         ),
-        (COLUMNS + "  load: {column: m, unit: kg}\n", "act through gravity; add it to estimate"),
+        (COLUMNS + "  load: {column: m, unit: kg}\n", "acts through gravity; add it to estimate"),
     ],
 )
 def test_what_a_column_lacks_is_one_line(tmp_path: Path, columns: str, says: str) -> None:
