@@ -91,7 +91,7 @@ def few_values(records: list[Run], view: View, p: Problem) -> str:
         return ""
     return (
         f"{channel} holds {values} values, the model has {terms} terms: no balance can be tested with it; as"
-        " response take a measured current or force, or `acceleration` with this column as `applied`"
+        " response take a measured force, or `acceleration` with this column as `applied`"
     )
 
 
