@@ -86,9 +86,8 @@ def counter_length(x: Array) -> float:
 def _is_counter(x: Array, step: Array, jumps: Mask, length: float) -> bool:
     """Whether jumps are a counter's and not the column's own. A counter jumps by its length less what moves
     in a row. Or the column uses it from end to end, and then a real step may fall on a wrap."""
-    moved = limits.MOVED_TIMES * float(np.quantile(np.abs(step[~jumps]), 0.99)) + 2.0 * _least_step(
-        step[~jumps]
-    )
+    still = step[~jumps]
+    moved = limits.MOVED_TIMES * float(np.quantile(np.abs(still), 0.99)) + 2.0 * _least_step(still)
     near = np.abs(np.abs(step[jumps]) - length) <= min(moved, limits.NEAR_LENGTH * length)
     whole = length in WORDS and np.ptp(x) >= length - 1 - moved
     return bool(np.mean(near) >= limits.MOST_JUMPS_WHOLE or whole)
@@ -140,11 +139,8 @@ def _far_off(x: Array, width: int) -> Mask:
     before, after = np.roll(x, width), np.roll(x, -width)
     off = np.abs(x - (before + after) / 2)
     off[:width], off[-width:] = 0.0, 0.0
-    outer = np.roll(x, width + 1), np.roll(x, -width - 1)
-    calm = np.abs((before + after) / 2 - (outer[0] + outer[1]) / 2)
-    near = np.abs(
-        after - before - (outer[1] - outer[0]) * width / (width + 1)
-    )  # a step, and no steady motion
+    wide = np.roll(x, width + 1) + np.roll(x, -width - 1)
+    calm, near = np.abs((before + after) / 2 - wide / 2), np.abs(after - before)
     finite = np.isfinite(off)
     if finite.sum() < limits.FEWEST_SAMPLES:
         return np.zeros(len(x), dtype=bool)

@@ -90,8 +90,8 @@ def few_values(records: list[Run], view: View, p: Problem) -> str:
     if values > terms:
         return ""
     return (
-        f"{channel} holds {values} values, the model has {terms} terms: no balance can be tested with it; as"
-        " response take a measured force, or `acceleration` with this column as `applied`"
+        f"{channel} holds {values} values, the model has {terms} terms: it tests no balance; as response"
+        " take a measured force, or `acceleration` with it as `applied`"
     )
 
 
