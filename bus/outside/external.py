@@ -35,11 +35,8 @@ class SpecError(ValueError):
     """A bus that cannot be opened, and why."""
 
 
-def open_bus(spec: str) -> can.BusABC:
-    """The python-can bus that `spec` names, e.g. `socketcan:vcan0`, `udp_multicast:239.74.163.2,port=43113`.
-
-    Raises SpecError with one line: what is wrong with the text, or why the interface cannot be opened.
-    """
+def parsed(spec: str) -> tuple[str, str, dict[str, Any]]:
+    """Interface, channel and options of `spec`; raises SpecError where no bus can be meant."""
     interface, colon, rest = spec.partition(":")
     channel, *options = rest.split(",")
     if not (interface and colon and channel):
@@ -53,6 +50,15 @@ def open_bus(spec: str) -> can.BusABC:
         if not (key and equals):
             raise SpecError(f'"{spec}": option "{option}" is not key=value')
         settings[key] = int(value) if value.isdecimal() and len(value) < 19 else value
+    return interface, channel, settings
+
+
+def open_bus(spec: str) -> can.BusABC:
+    """The python-can bus that `spec` names, e.g. `socketcan:vcan0`, `udp_multicast:239.74.163.2,port=43113`.
+
+    Raises SpecError with one line: what is wrong with the text, or why the interface cannot be opened.
+    """
+    interface, channel, settings = parsed(spec)
     try:
         bus = can.Bus(interface=interface, channel=channel, ignore_config=True, **settings)
     except Exception as error:  # forty interfaces, each with its own idea of what to raise for a wrong option

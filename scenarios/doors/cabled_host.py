@@ -6,6 +6,7 @@ from time import monotonic, sleep
 
 from rich.console import Console
 
+from bus.outside.external import parsed
 from bus.protocol import Device
 from host.client import TICK_NS
 from host.console.heard import HeardBus
@@ -34,7 +35,8 @@ class CabledHost(Host):
         scenario, model = chosen(options.scenario, network_name=options.network)
         scenario = dated(scenario)
         pc = TelescopePc(scenario, lambda _t, data: self.usb.write(data), devices_in(scenario), options.logs)
-        bus = options.usb.startswith("can:")
+        if bus := options.usb.startswith("can:"):
+            parsed(options.usb[4:])  # what cannot be meant is said now; a bus that is not there is waited for
         opener = partial(CanPort, options.usb[4:]) if bus else partial(HidPort, options.usb)
         self.usb = LinkTask(options.usb, opener, self.inbox, said.put)
         self.tasks = [self.usb]

@@ -47,7 +47,7 @@ def located(given: Path, folder: Path = SCENARIOS) -> Path:
 
 UNDATED = Clock(dt.datetime(2000, 1, 1, tzinfo=dt.UTC))
 """The lab network has no date: boards do not look at the sky, and a host takes today's."""
-_NEEDS = {"display": "DISPLAY", "focus": "FOCUS"}
+_NEEDS = {"display": "DISPLAY", "dome": "DOME", "focus": "FOCUS"}
 """Board by action; every network has the axes."""
 
 
@@ -134,7 +134,9 @@ def check_boards(scenario: Scenario) -> None:
 
     names = [device.name for device in devices_in(scenario)]
     wanted = [(step.where, _NEEDS[step.action]) for step in scenario.steps if step.action in _NEEDS]
-    wanted += [(each.where, each.arguments["node"]) for each in scenario.faults if "node" in each.arguments]
+    said = [(each.where, each.arguments) for each in scenario.steps]
+    said += [(each.where, each.arguments) for each in scenario.faults]
+    wanted += [(where, arguments["node"]) for where, arguments in said if "node" in arguments]
     network = scenario.network.get("name", "lab")
     for where, board in wanted:
         if board not in names:

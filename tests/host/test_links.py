@@ -11,6 +11,7 @@ import pytest
 from rich.console import Console
 
 from bus.can.frame import Frame
+from bus.outside.external import SpecError
 from bus.protocol import Device, Opcode, pack_command
 from bus.protocol.report import pack_report, unpack_report
 from host.links.ports import CanPort, LinkTask
@@ -142,3 +143,9 @@ def test_the_host_by_itself_powers_up_the_boards_beside_a_broken_serial_port(
 def test_the_host_expects_the_boards_of_the_network_it_is_told(network: str | None, count: int) -> None:
     boards = devices_in(chosen(network_name=network)[0])
     assert len(boards) == count and ("DOME" in [board.name for board in boards]) == (network == "final")
+
+
+@pytest.mark.parametrize("spec", ["nope", "nope:vcan0", "socketcan:vcan0,fd"])
+def test_a_bus_that_cannot_be_meant_is_refused_at_once(tmp_path: Path, spec: str) -> None:
+    with pytest.raises(SpecError):
+        CabledHost(HostOptions(usb=f"can:{spec}", logs=tmp_path / "logs"), Console(file=StringIO()))

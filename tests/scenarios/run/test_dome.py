@@ -27,8 +27,3 @@ def test_the_dome_turns_the_shorter_way_and_opens(schmidt: Command, short: Path)
     took = [float(step["end_s"]) - float(step["start_s"]) for step in steps]  # type: ignore[arg-type]
     # 2°/s: 6° and, the shorter way, 8°, to within half a degree, a frame and a tick
     assert 2.5 < took[0] < 4 and 3.5 < took[2] < 5
-
-
-def test_without_a_dome_the_step_says_so(schmidt: Command, short: Path) -> None:
-    (step,) = run(schmidt, short, "steps:\n  - dome: {shutter: closed}\n")
-    assert step["failed"] == "DOME is not on this network"
