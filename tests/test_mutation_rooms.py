@@ -3,6 +3,7 @@
 import os
 import signal
 from pathlib import Path
+from types import FrameType
 
 import pytest
 
@@ -10,7 +11,7 @@ from tests.mutation import ratchet
 from tests.mutation.operators import mutants
 from tests.mutation.ratchet import fallen, floors, key, reasons
 from tests.mutation.rooms import AIMS, BESIDES, judging, mirrors, modules, room_of
-from tests.mutation.session import forked, outcomes
+from tests.mutation.session import forked, outcomes, too_long
 from tests.mutation.trial import Bench
 
 BOTH = "value > LIMIT and value > least"
@@ -147,3 +148,21 @@ def test_what_a_shared_fixture_executes_is_every_tests_that_asks_for_it(
     assert sorted(found.executing("bus/here.py", range(3, 4))) == [one, two]
     assert found.executing("bus/here.py", range(5, 6)) == [one]
     assert found.imported("bus/here.py", range(1, 2)) and not found.imported("bus/here.py", range(3, 4))
+
+
+@pytest.mark.parametrize("place", ["test_some.py", "site-packages/coverage/collector.py"])
+def test_a_test_that_takes_too_long_ends_where_no_lock_is_held(place: str) -> None:
+    """What raises within coverage leaves its lock shut, and the run waits for ever."""
+    held: dict[str, FrameType] = {}
+    exec(compile("import sys\nframe = sys._getframe()", place, "exec"), held)
+    old = signal.signal(signal.SIGPROF, signal.SIG_IGN)
+    try:
+        if "coverage" in place:
+            too_long(signal.SIGPROF, held["frame"])
+            assert signal.getitimer(signal.ITIMER_PROF)[0] > 0
+        else:
+            with pytest.raises(pytest.fail.Exception):
+                too_long(signal.SIGPROF, held["frame"])
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGPROF, old)

@@ -16,7 +16,7 @@ import coverage
 import pytest
 
 from tests.mutation.rooms import mirrors, modules
-from tests.mutation.session import Test, forked, run
+from tests.mutation.session import Test, forked, run, too_long
 
 IMPORT = ""
 """Coverage's context while no test runs."""
@@ -53,7 +53,7 @@ class Recorder:
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> Iterator[None]:
-        signal.signal(signal.SIGPROF, lambda *_: pytest.fail("takes too long"))
+        signal.signal(signal.SIGPROF, too_long)
         signal.setitimer(signal.ITIMER_PROF, self.longest_s)
         with self.within(item.nodeid, tuple(getattr(item, "fixturenames", ()))):
             result = yield
