@@ -186,11 +186,12 @@ class Scene:
 
     @cached_property
     def one_speed(self) -> tuple[float, float]:
-        """Speed, position units per s, that all files have, and the rms by which the position leaves it. None
-        of an axis with two motors, whose volts tell a line in time."""
+        """Speed, position units per s, that all files have, each its own way, and the rms by which the position
+        leaves it. None of an axis with two motors, whose volts tell a line in time."""
         v, p = self.view, self.problem
         own = [(p.session == k).astype(float) for k in np.unique(p.session)]
-        steady = np.column_stack([v.t[v.rows], *own])
+        ways = sum(np.sign(np.sum(v.speed[v.rows] * rows * p.valid)) * rows for rows in own)
+        steady = np.column_stack([v.t[v.rows] * ways, *own])
         if self.pair is not None or not p.valid.any():
             return 0.0, np.inf
         beta = solve(steady[p.valid], v.x[v.rows][p.valid])

@@ -102,7 +102,7 @@ def test_a_command_that_fails_is_the_boards() -> None:
 def test_a_state_or_health_that_no_frame_holds_is_the_boards(monkeypatch: pytest.MonkeyPatch) -> None:
     alone = Alone(PowerBoard, POWER_DRIVES, voltage=24.0)
     monkeypatch.setattr(PowerBoard, "health", lambda _: "well")
-    with pytest.raises(BoardError, match="fails at 2 s: health cannot be sent: invalid literal"):
+    with pytest.raises(BoardError, match="fails at 2 s: health cannot be sent"):
         alone.board._ping(2 * SECOND)
     monkeypatch.setattr(PowerBoard, "state", lambda _: 300)
     with pytest.raises(BoardError, match="state cannot be sent: "):
