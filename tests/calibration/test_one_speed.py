@@ -5,6 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from calibration.balances.balance import problem_of
+from calibration.balances.view import view_of
+from calibration.inputs.logs import read_drive
+from calibration.inputs.rigfile import load_rig
+from calibration.look.search import scene_of
 from tests.calibration.test_drives import FORCE, answer, found, motion
 
 MOTOR = """rig: motor at one speed
@@ -41,6 +46,20 @@ def test_at_one_speed_a_stage_is_first_and_the_clock_is_in_its_class(tmp_path: P
     first = data["effects"][0]
     assert (first["name"], first["harmonic"]) == ("motor_cogging", 6)
     assert "command_disturbance" in first["equivalent"] and data["verdict"] == "ambiguous"
+
+
+def test_files_there_and_back_have_one_speed(tmp_path: Path) -> None:
+    """Either goes its own way; a line over the place is one on the clock in both."""
+    t, x, e = steady()
+    (tmp_path / "rig.yaml").write_text(TORQUE)
+    for name, place in (("there", x), ("back", 7.0 - x)):
+        rows = np.column_stack([t, place, e])
+        np.savetxt(tmp_path / f"{name}.csv", rows, delimiter=",", header="t,x,u", comments="")
+    rig = load_rig(tmp_path / "rig.yaml")
+    records = read_drive([tmp_path / "there.csv", tmp_path / "back.csv"], rig).records
+    view = view_of(records, rig, rig.responses[0])
+    speed, slip = scene_of(view, problem_of(view, records, [])).one_speed
+    assert speed == pytest.approx(1.0, rel=1e-3) and slip < 1e-3
 
 
 def test_at_two_speeds_each_of_the_two_is_alone(tmp_path: Path) -> None:
