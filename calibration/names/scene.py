@@ -186,8 +186,10 @@ class Scene:
 
     @cached_property
     def one_speed(self) -> tuple[float, float]:
-        """Speed, position units per s, that all files have, each its own way, and the rms by which the position
-        leaves it. None of an axis with two motors, whose volts tell a line in time."""
+        """Speed, position units per s, that all files have, each its own way, and the rms off it.
+
+        None of an axis with two motors, whose volts tell a line in time.
+        """
         v, p = self.view, self.problem
         own = [(p.session == k).astype(float) for k in np.unique(p.session)]
         ways = sum(np.sign(np.sum(v.speed[v.rows] * rows * p.valid)) * rows for rows in own)
