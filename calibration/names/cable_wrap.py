@@ -30,8 +30,7 @@ def columns(s: Scene) -> list[Candidate]:
     sizes = [("stiffness", f"{s.unit}/{s.angle_unit}"), ("hysteresis", s.unit)]
     sizes += [("neutral_torque", s.unit)] * (s.pair is not None)  # a rig's base has an offset
     travels = [travel for part in TRAVELS if v.resolved < (travel := part * turn) < s.span]
-    weighed = "gravity_cos" in s.declared
-    alone = s.pair is not None or s.span >= turn or weighed  # a weight comes round again
+    alone = s.pair is not None or s.span >= turn or s.weighed  # a weight comes round again
     twins = () if alone else (WEIGHT.name,)
     along = ("width", travels, s.angle_unit)
     looped = grid(NAME.name, s.shaped(full), *sizes, along=along, positive=(0, 1), twins=twins)

@@ -57,7 +57,7 @@ def columns(s: Scene) -> list[Candidate]:
 
     Behind a joint whose axis is parallel the weight lies over the sum of both angles.
     """
-    if (s.pair is None and lacks(s)) or "gravity_cos" in s.declared:
+    if (s.pair is None and lacks(s)) or s.weighed:
         return []
     wound = ("cable_wrap",) if s.span < LEAST_TURN * s.turn else ()
     twins = (*forces_once_a_turn(s.view.rig.stages, s.turn), *wound)

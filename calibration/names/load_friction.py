@@ -51,9 +51,12 @@ def _of(s: Scene, load: np.ndarray) -> Candidate:
 
 def lacks(s: Scene) -> str:
     """A load beside friction."""
-    have = {"inertia", "gravity_cos"} & set(s.declared) if s.view.dynamic else set()
-    have |= {"applied"} & set(s.declared)
-    return "" if have else "a load beside friction: accelerations, a weight, or what is applied"
+    loaded = s.view.dynamic and (s.weighed or "inertia" in s.declared)
+    return (
+        ""
+        if loaded or "applied" in s.declared
+        else "a load beside friction: accelerations, a weight, or what is applied"
+    )
 
 
 NAME = Name(name="load_friction", columns=columns, experiment="the same motion with two loads", lacks=lacks)

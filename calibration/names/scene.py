@@ -180,6 +180,11 @@ class Scene:
         return x, x @ np.linalg.lstsq(x[p.train], y[p.train], rcond=1e-8)[0]
 
     @property
+    def weighed(self) -> bool:
+        """Whether a weight over the angle, or over several joints', is a declared term."""
+        return any(name.startswith("gravity_") for name in self.declared)
+
+    @property
     def stroke(self) -> float:
         """The usual travel between two reversals, position units."""
         return float(np.quantile(np.abs(self.view.since[self.view.ok]), 0.95)) or 1.0

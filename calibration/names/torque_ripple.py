@@ -33,7 +33,7 @@ def lacks(s: Scene) -> str:
     """A force that is more than friction; volts have their back-EMF."""
     if s.windings is not None:
         return ""
-    more = {"inertia", "gravity_cos", "stiffness"} & set(s.declared)
+    more = s.weighed or {"inertia", "stiffness"} & set(s.declared)
     if more and s.view.response.channel != "acceleration":
         return ""
     return "a force beside friction (mass or weight): else it is friction over position"

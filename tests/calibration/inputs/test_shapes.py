@@ -15,6 +15,7 @@ from calibration.inputs.logs import read_drive
 from calibration.inputs.rigfile import load_rig
 from calibration.inputs.run import Run, quantum, rows_per_reading, step_of
 from calibration.look.search import scene_of
+from calibration.names.gravity_imbalance import NAME as WEIGHT
 from calibration.names.lines import line, of_stage
 
 STEP_S = 0.01
@@ -235,6 +236,7 @@ def test_two_joints_that_lie_anyhow_turn_gravity(tmp_path: Path) -> None:
     _, left = p.plain_fit(p.valid)
     assert p.base.shape[1] < 2 * 3**2 + 1  # along this motion some of the products are alike
     assert np.std(left[p.valid]) < 0.01 * np.std(p.y[p.valid])  # what the filter takes off the waves
+    assert WEIGHT.columns(scene_of(view_of(records, rig, rig.responses[0]), p)) == []  # it is declared
 
 
 def test_another_force_and_every_files_own_offset_are_terms(tmp_path: Path) -> None:
