@@ -73,7 +73,10 @@ def _distribution(given: dict[str, Any], where: str, kind: str) -> Drawn:
     if isinstance(spread, list):
         if "times" in given and not all(type(each) in (int, float) for each in spread):
             raise ScenarioError(f"{where}: {kind}: `times` is a list of numbers")
-        pick = lambda share: spread[min(int(share * len(spread)), len(spread) - 1)]  # noqa: E731
+
+        def pick(share: float) -> Any:
+            return spread[min(int(share * len(spread)), len(spread) - 1)]
+
         return pick, spread, spread[:_LOOKED_AT]
     levels = int(spread.get("levels", _LEVELS))
     inverse = _inverse(spread, where)

@@ -146,10 +146,11 @@ def load(file: Path) -> Plan:
         time_s=parse(data["budget"]["time"], "time") if "time" in data.get("budget", {}) else None,
     )
     load_scenario(Document(file, plan.case(0).document, {}))  # the first case is a scenario, too
+    beside = Path(plain["_folder"]) / file.name  # where the scenario's own names are looked for
     for each in found:  # and the ends of every input
         for value in each.ends:
             try:
-                prepare(Document(file, plan.document([(each, value)]), {}))
+                prepare(Document(beside, plan.document([(each, value)]), {}))
             except ScenarioError as error:
                 raise ScenarioError(f"{file}: input {each.name!r}, value {value!r}: {error}") from None
     return plan

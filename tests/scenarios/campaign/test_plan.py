@@ -238,3 +238,16 @@ def test_what_no_run_could_use_is_refused_before_the_first_run(
 ) -> None:
     with pytest.raises(ScenarioError, match=says):
         load(campaign(inputs))
+
+
+def test_a_plant_beside_the_scenario_is_found_from_another_folder(campaign: Any, tmp_path: Path) -> None:
+    from plant.model import FILES
+
+    own = (FILES / "low_preload.yaml").read_text(encoding="utf-8")
+    (tmp_path / "mine.yaml").write_text(own, encoding="utf-8")
+    (tmp_path / "short.yaml").write_text(SCENARIO.replace("plant: low-preload", "plant: mine.yaml"))
+    path = campaign([{"seed": True, "is": [1, 2]}], sample="grid")
+    (tmp_path / "elsewhere").mkdir()
+    moved = tmp_path / "elsewhere" / path.name
+    moved.write_text(path.read_text().replace("short.yaml", "../short.yaml"))
+    assert {case.values["seed"] for case in cases(moved)} == {1, 2}
