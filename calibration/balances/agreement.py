@@ -17,6 +17,8 @@ from calibration.statistics.tails import rms
 from calibration.statistics.thresholds import SURE_Z
 
 SCALED = 0.01  # of the scale: less is how either rate was smoothed. ASSUMPTION
+# of a rate's rms, its noise: more makes a slope over it a twenty-fifth too small, its square. arithmetic
+NOISY = 0.2
 MATTERS = 0.2  # of the mean square of what the columns disagree by. ASSUMPTION
 SMALLEST = 0.1  # sample periods: a shorter delay is within a reading's own window. ASSUMPTION
 IMPULSE = 6  # standard deviations of a Gaussian, beyond which hardly anything of it is left. arithmetic
@@ -100,12 +102,11 @@ def velocity_against_position(view: View, held: Mask) -> Agreement | None:
     )
     unit = view.rig.columns["velocity"].unit
     own, spread = float(last.beta[0]), float(last.errors[0])
-    # rows that repeat spoil the rates, not the way; and a rate of noise alone has no scale
-    if abs(_of_the_travel(view) - 1.0) < SCALED or noise[1] * _passed(np.gradient, sigma) > MATTERS * rms(
-        v[rows][test]
-    ):
+    size = rms(v[rows][test])
+    noisy = noise[1] * _passed(np.gradient, sigma) > NOISY * size
+    if noisy or abs(_of_the_travel(view) - 1.0) < SCALED:  # rows that repeat spoil the rates, not the way
         own = 1.0
-    return Agreement("velocity", unit, delay, error, b, c, floor, late, own, spread, rms(v[rows][test]))
+    return Agreement("velocity", unit, delay, error, b, c, floor, late, own, spread, size)
 
 
 def _of_the_travel(view: View) -> float:

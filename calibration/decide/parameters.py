@@ -128,7 +128,7 @@ def finding_of(s: Selection, k: int) -> Finding:
         parameters=parameters_of(s, k),
         evidence=x.evidence,
         share=x.held.share,
-        note="; ".join([*([c.note] if c.note else []), *(f"fits exactly as well: {_told(e)}" for e in tied)]),
+        note="; ".join(filter(None, [c.note, *(f"fits exactly as well: {_told(e)}" for e in tied)])),
     )
 
 

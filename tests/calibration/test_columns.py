@@ -1,16 +1,21 @@
 """What columns alone say: one that measures nothing is refused, a line that the filter takes away is told, a
 ratio of two sensors is no gap and no delay."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from calibration.balances.agreement import velocity_against_position
+from calibration.balances.balance import problem_of
+from calibration.balances.view import view_of
 from calibration.command import calibrate
 from calibration.errors import CalibrationInputError
 from calibration.inputs.axislog import read_axis_log
 from calibration.inputs.logs import read_drive
 from calibration.inputs.rigfile import load_rig
+from calibration.look.volts import FEW_VOLTS
 from tests.calibration.logs import tiny_log
 from tests.calibration.test_bad_input import column
 from tests.calibration.test_drives import FORCE, SENSORS, answer, found, motion
@@ -142,3 +147,37 @@ def test_frames_that_repeat_are_seen_beside_a_reference_that_goes_on(tmp_path: P
     (record,) = read_drive([tmp_path / "a.csv"], load_rig(tmp_path / "rig.yaml")).runs
     assert [r.kind for r in record.repairs] == ["repeat"]
     assert len(quick) * 0.9 <= record.repairs[0].rows <= len(at)
+
+
+def test_a_rate_of_noise_alone_has_no_scale(tmp_path: Path) -> None:
+    """A stalled motor: the position trembles by its noise, and the tachometer by its own."""
+    rng = np.random.default_rng(6)
+    t = np.arange(0, 30.0, 0.005)
+    place, speed, force = rng.standard_normal((3, len(t)))
+    still = 0.01 * np.sin(2 * np.pi * 0.1 * t)
+    columns = FORCE.replace("  effort:", "  velocity: {column: v, unit: m/s}\n  effort:")
+    (tmp_path / "rig.yaml").write_text(columns)
+    rows = np.column_stack([t, still + 1e-3 * place, np.sin(2 * np.pi * 0.3 * t) + force, 1e-3 * speed])
+    np.savetxt(tmp_path / "a.csv", rows, delimiter=",", header="t,x,u,v", comments="", fmt="%.9g")
+    rig = load_rig(tmp_path / "rig.yaml")
+    records = read_drive([tmp_path / "a.csv"], rig).records
+    view = view_of(records, replace(rig, smooth_s=0.02), rig.responses[0])
+    found = velocity_against_position(view, problem_of(view, records, []).held)
+    assert found is not None and found.scaled == ""
+
+
+def test_volts_that_a_wide_filter_leaves_too_few_rows_of_are_told(tmp_path: Path) -> None:
+    t, x, u = motion(101.0)
+    rig = FORCE.replace("effort", "current").replace("unit: N}\nresponse", "unit: A}\nresponse")
+    rig = rig.replace("response:", "  voltage: {column: e, unit: V}\nresponse:") + "smooth_s: 2\n"
+    data = answer(tmp_path, rig, (t[::4], x[::4], u[::4], 2 * u[::4]), header="t,x,u,e")
+    assert FEW_VOLTS in data["reasons"] and "electrical" not in data["error"]
+
+
+def test_a_filter_that_takes_most_away_is_a_remark(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    t, x, u = motion()
+    loud = u + 8.0 * np.sin(2 * np.pi * 40.0 * t) + 8.0 * np.sin(2 * np.pi * 61.0 * t)
+    answer(tmp_path, FORCE + "smooth_s: 0.3\n", (t, x, loud))
+    assert "! the filter of 0.3 s" in capsys.readouterr().out.replace("\n", " ")

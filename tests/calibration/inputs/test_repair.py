@@ -1,5 +1,6 @@
 """Repairs: what was broken on purpose comes back, and what is sound stays as it is."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -137,6 +138,17 @@ def test_rows_are_put_later_where_rows_are_missing_and_nobody_stamped_it(tmp_pat
     assert np.all((told < 1.5 * PERIOD_S) | np.isclose(told, truth))  # none where none is missing
     clear = quick[1:] & (truth > 1.5 * PERIOD_S)
     assert np.isclose(told, truth)[clear].mean() > 0.9
+
+
+def test_the_sum_of_a_speed_has_lost_no_rows(tmp_path: Path) -> None:
+    """Twice the speed in a row is that speed: its clock does not stand."""
+    r, summed = made(1), rig(tmp_path)
+    step = np.diff(r.columns["position"], prepend=0.0) * np.where(np.arange(ROWS) % 50 == 25, 2.0, 1.0)
+    r.columns["position"] = np.cumsum(step)
+    before = r.columns["t"].copy()
+    position = replace(summed.columns["position"], integrated=True)
+    repair(r, replace(summed, columns={**summed.columns, "position": position}))
+    assert np.array_equal(r.columns["t"], before)
 
 
 def test_a_motion_in_uneven_steps_has_lost_nothing(tmp_path: Path) -> None:
