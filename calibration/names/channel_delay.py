@@ -34,7 +34,8 @@ def columns(s: Scene) -> list[Candidate]:
     starts = [k * step for k in ROWS if k * step < PART * float(np.ptp(v.t))]
     more: dict[str, Any] = {"steps": (STEP * step,), "sign": 1, "searched": 1}
     late = [tried(NAME.name, behind, ratio, at={"delay": (d, "s")}, **more) for d in starts]
-    return [candidate(NAME.name, s.at(-v.rate(v.x)), "delay", most=LINEAR * step), *late]
+    reads = s.declared.get("scale", 1.0) if v.response.ratio is None else v.response.ratio
+    return [candidate(NAME.name, s.at(-reads * v.rate(v.x)), "delay", most=LINEAR * step), *late]
 
 
 def late_column(note: str, delay: float, error: float, share: float = 1.0, reach: float = NORMAL) -> Finding:
