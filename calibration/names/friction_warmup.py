@@ -11,6 +11,9 @@ from calibration.names.scene import since_first
 # part of the time from the first row to the last: time constants that are tried. ASSUMPTION
 PARTS = (0.05, 0.1, 0.2, 0.4, 0.8)
 LONGEST = 1.0  # times that time, for a time constant: a slower one is a slope. ASSUMPTION
+# times the declared friction, that it has at first beyond that. ASSUMPTION: a lubricant's viscosity halves
+# with some 10 K, and a drive warms by 20 K at most within a log
+MOST_DEPTH = 3.0
 OF_COULOMB = "of_coulomb"
 
 
@@ -20,6 +23,8 @@ def columns(s: Scene) -> list[Candidate]:
     The time is on the clock that all files share, where there is one, or from the start of every file.
     Friction falls as the depth is negative.
     """
+    if lacks(s):
+        return []
     known = s.declared.get("coulomb", 0.0) > 0 and s.declared.get("viscous", 0.0) > 0
     # all files of a rig are one session
     session = np.zeros(len(s.view.clock)) if s.pair is None else s.pair.motion.frame.session
@@ -32,6 +37,12 @@ def columns(s: Scene) -> list[Candidate]:
         size = ("depth", "1/K")
         out.append(candidate(NAME.name, _friction(s, t - t.mean()), size, domain="temperature", sign=-1))
     return out
+
+
+def lacks(s: Scene) -> str:
+    """Friction, of which a depth is a part."""
+    stated = s.pair is not None or any(s.declared.get(n, 0.0) > 0 for n in ("coulomb", "viscous"))
+    return "" if stated else "friction of the declared model ('coulomb', 'viscous'), which changes"
 
 
 def _friction(s: Scene, change: Array, of_coulomb: bool = False) -> Array:
@@ -50,7 +61,7 @@ def _cooling(s: Scene, name: str, since: Array, of_coulomb: bool) -> list[Candid
 
     which = {OF_COULOMB: (1.0, "0 all friction, 1 what knows no speed")} if of_coulomb else {}
     along = (name, [part * span for part in PARTS], "s")
-    return grid(NAME.name, shape, "depth", along=along, beside=which, sign=-1)
+    return grid(NAME.name, shape, "depth", along=along, beside=which, sign=-1, most=MOST_DEPTH)
 
 
 def to_plant(f: Finding, facts: Facts) -> Made:
@@ -65,6 +76,7 @@ NAME = Name(
     name="friction_warmup",
     columns=columns,
     relative={"depth": ("coulomb", 1)},
+    lacks=lacks,
     to_plant=to_plant,
     experiment="repeat the same run after a rest of half an hour: a warm-up comes back",
     beside=Beside(single=True),

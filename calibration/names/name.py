@@ -80,6 +80,11 @@ def both_ways(s: Scene) -> str:
     return "" if s.both else "motion in both directions over the same place"
 
 
+def unstated(s: Scene, number: str) -> bool:
+    """Whether the rig file of a drive neither estimates a friction number nor knows it."""
+    return s.pair is None and number not in (*s.view.rig.estimate, *s.view.rig.constants)
+
+
 def beside_stated(s: Scene, number: str, along: Array, unit: str) -> list[Candidate]:
     """A change of a friction number `along` full-rate rows, from the known one or from none at all."""
     name, known = f"{number}_change", s.pair is not None or number in s.view.rig.estimate

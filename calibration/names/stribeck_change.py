@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from calibration.names.name import Candidate, Changed, Name, Scene, grid
+from calibration.names.name import Candidate, Changed, Name, Scene, grid, unstated
 from calibration.names.scene import FEWEST
 
 # part of the top speed: Stribeck speeds that are tried. ASSUMPTION
@@ -31,7 +31,9 @@ def columns(s: Scene) -> list[Candidate]:
         return bool(low >= FEWEST and top >= 2.5 * vs and vs >= least)
 
     along = ("stribeck_speed", filter(seen, (part * top for part in PARTS)), f"{s.angle_unit}/s")
-    return grid(NAME.name, s.shaped(full), ("stribeck_force", s.unit), along=along, sign=1)
+    # friction does not end with its dip: where nobody stated a level it may hold that, too
+    level = ("coulomb_change",) if unstated(s, "coulomb") else ()
+    return grid(NAME.name, s.shaped(full), ("stribeck_force", s.unit), along=along, sign=1, twins=level)
 
 
 def lacks(s: Scene) -> str:
