@@ -9,13 +9,14 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d, maximum_filter1d
+from scipy.ndimage import maximum_filter1d
 
 from calibration.arrays import Array, Mask
 from calibration.balances.context import direction_of, since_reversal, turning_points
 from calibration.balances.filters import Filter, by_piece, pieces, smooth
 from calibration.balances.frame import SHORT
 from calibration.balances.noise import position_noise
+from calibration.balances.width import LEAST_OF_SENSORS, USUAL, Limits, passing_waves, told_by_noise
 from calibration.errors import CalibrationInputError
 from calibration.inputs.declaration import Response, Rig
 from calibration.inputs.run import Run, rows_per_reading, step_of
@@ -33,15 +34,8 @@ MOST_WAVES = 24
 ROWS_PER_WAVE = 4.0  # rows per period of the quickest of them. ASSUMPTION: Nyquist's two, twice
 SENSOR_ROWS = 4_000  # rows of one sensor against another, which has no accelerations to follow. ASSUMPTION
 WINDOW = 5.0  # standard deviations of the filter in `smooth_s`. definition
-NOISE = 0.01  # of the acceleration's rms, that the position's noise may leave in it. ASSUMPTION
-# the same where the filter leaves few rows: an inertia is then off by its square, a thousandth. ASSUMPTION
-NOISE_OF_FEW = 0.03
-FEW = 600  # rows behind the filter, that are few: half of them stands still or is held out. ASSUMPTION
 FEWEST = 3  # rows of a second difference. definition
 LEAST_WIDTH = 0.5  # rows, of the speed's smoothing: a central difference, two rows, has 0.58. arithmetic
-LEAST = 2.0  # rows: standard deviation of the filter at least, where the rig file does not say it. ASSUMPTION
-MOST = 40.0  # rows likewise at most. ASSUMPTION
-NYQUIST = 0.5  # cycles per row. by arithmetic
 RESOLVED = 6.0  # steps of the position's sensor that a travel must have before its shape is seen. ASSUMPTION
 # rows per reading of a column, from where on its noise is told reading by reading. ASSUMPTION: not a few gaps
 SELDOM = 1.5
@@ -152,8 +146,8 @@ class View:
         return by_piece(full, self.segment, lambda x: np.interp(row[: len(x)] + late, row[: len(x)], x), 3)
 
 
-def view_of(records: list[Run], rig: Rig, response: Response) -> View:
-    """All records on one grid; the filter from the rig file or from the position's noise."""
+def view_of(records: list[Run], rig: Rig, response: Response, limits: Limits = USUAL) -> View:
+    """All records on one grid; the filter from the rig file, or within `limits` from the position's noise."""
     period = float(np.median([r.period_s for r in records]))
     parts = [_regular(r, period) for r in records]
     if max(len(p["t"]) for p in parts) < FEWEST:
@@ -168,7 +162,10 @@ def view_of(records: list[Run], rig: Rig, response: Response) -> View:
     # as they were logged: on a grid of its own a column has none
     quanta = {k: step for k in columns if (step := step_of(records, k)) is not None}
     noise = position_noise(columns["position"], file, quanta.get("position"))
-    sigma = _sigma(columns["position"], file, noise, period, rig, dynamic)
+    told = told_by_noise(columns["position"], file, noise, limits)
+    told = told if dynamic else max(told, LEAST_OF_SENSORS)
+    sigma = told if rig.smooth_s is None else rig.smooth_s / WINDOW / period
+    passing = passing_waves(columns["position"], file, rig, sigma, limits.least)
     if dynamic:
         gap &= ~_filtered_over(gap, sigma)
     apart = gap if dynamic else gap & ~_stood_over(columns["position"], gap, rig)
@@ -177,7 +174,7 @@ def view_of(records: list[Run], rig: Rig, response: Response) -> View:
         rig=rig,
         response=response,
         period_s=period,
-        filter=Filter(min(sigma, _passing(columns["position"], file, rig, sigma)) if dynamic else 0.0),
+        filter=Filter(min(sigma, passing) if dynamic else 0.0),
         t=t,
         clock=t + starts[file],
         file=file,
@@ -193,7 +190,7 @@ def view_of(records: list[Run], rig: Rig, response: Response) -> View:
         in_order=len(records) > 1 and any(r.in_order for r in records),
         seldom={k: round(share) for k in columns if (share := rows_per_reading(records, k)) > SELDOM},
     )
-    _motion(view, sigma)
+    _motion(view, max(sigma, told))  # whether it moves is seen through no narrower filter
     view.run = _runs(view, label)
     choose_rows(view)
     return view
@@ -246,35 +243,9 @@ def _stood_over(x: Array, gap: Mask, rig: Rig) -> Mask:
     return out
 
 
-def _sigma(x: Array, file: NDArray[np.int64], noise: float, period: float, rig: Rig, dynamic: bool) -> float:
-    """Rows: wide enough for the position's `noise` to be a small part of the acceleration."""
-    if rig.smooth_s is not None:
-        return rig.smooth_s / WINDOW / period
-    sigma = LEAST
-    while sigma < MOST:
-        a = np.concatenate([np.diff(gaussian_filter1d(x[i:j], sigma), 2) for i, j in pieces(file)])
-        size = float(np.sqrt(np.mean(np.clip(a, *np.quantile(a, [0.005, 0.995])) ** 2)))
-        most = NOISE if len(x) > FEW * sigma else NOISE_OF_FEW
-        if noise * np.sqrt(3 / (8 * np.sqrt(np.pi)) / sigma**5) < most * size:
-            break
-        sigma *= 1.25
-    return sigma if dynamic else max(sigma, 4.0)
-
-
-def _passing(x: Array, file: NDArray[np.int64], rig: Rig, sigma: float) -> float:
-    """Rows: the filter that leaves the quickest declared wave 0.6 of its amplitude at the usual top speed. It
-    is LEAST at least, as quicker accelerations than the position tells are in the response, too."""
-    soft = np.concatenate(
-        [np.gradient(gaussian_filter1d(x[i:j], sigma)) for i, j in pieces(file) if j > i + 1]
-    )
-    waves = max((g.harmonics / g.period for g in rig.stages if g.period), default=0.0)
-    cycles = min(float(np.quantile(np.abs(soft), 0.95)) * waves, NYQUIST)
-    return max(1 / (2 * np.pi * cycles), LEAST) if cycles > 0 else np.inf
-
-
 def acceleration(view: View) -> Array:
     """Full-rate acceleration (n,), smoothed until the position's noise is a small part of it."""
-    width = _sigma(view.x, view.file, view.noise, view.period_s, view.rig, True)
+    width = told_by_noise(view.x, view.file, view.noise)
     return smooth(view.second(view.x), view.segment, width)
 
 

@@ -14,7 +14,7 @@ from calibration.balances.motion import Motion, motion_of
 from calibration.balances.problem import Problem
 from calibration.balances.thresholds import LEAST_COMPLIANCE
 from calibration.balances.torque import WIDTH, Transmission
-from calibration.balances.view import NYQUIST
+from calibration.balances.width import NYQUIST
 from calibration.decide.broadband import unexplained_volts
 from calibration.decide.delays import delay_findings
 from calibration.decide.heldout import choose_held_out

@@ -11,6 +11,7 @@ from calibration.balances.problem import Problem
 from calibration.balances.thresholds import FEWEST_ROWS
 from calibration.balances.view import View, view_of
 from calibration.balances.volts import has_volts
+from calibration.balances.width import NARROW
 from calibration.decide.thresholds import STILL_MISSING
 from calibration.errors import CalibrationInputError
 from calibration.finding import UNKNOWN
@@ -43,7 +44,13 @@ def look_at_response(drive: Drive, rig: Rig, options: Options) -> Looked:
         view = view_of(records, rig, response)
         if not views:
             agreement = velocity_against_position(view, problem_of(view, records, options.hold_out).held)
-        balances.append(look_at_forces(view, records, options))
+        balance = look_at_forces(view, records, options)
+        if balance.missing and not _names(balance):
+            tell(f"{response.channel}: through a narrower filter")
+            finer = view_of(records, rig, response, NARROW)
+            if finer.wide < view.wide and _names(other := look_at_forces(finer, records, options)):
+                view, balance = finer, other
+        balances.append(balance)
         views.append(view)
     held_out = list(_held_names(views[0], balances[0].selection.problem, records))
     best = next((k for k, v in enumerate(views) if v.dynamic), 0)  # its filter is made for rates
@@ -87,6 +94,11 @@ def look_at_response(drive: Drive, rig: Rig, options: Options) -> Looked:
         notes=[*start, *_gaps(records), *(note for kind, note in repairs if kind not in REMARKED)],
         remarks=[*(note for kind, note in repairs if kind in REMARKED), *strange, *scaled, *short],
     )
+
+
+def _names(b: Balance) -> bool:
+    """Whether the response has an effect with a name."""
+    return any(f.name != UNKNOWN and not f.of_column for f in b.findings)
 
 
 def _check(records: list[Run], rig: Rig) -> None:

@@ -5,11 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from calibration.arrays import Array
 from calibration.balances.balance import TOLD_BY, response_of
 from calibration.balances.candidate import sine_columns, waves
 from calibration.balances.filters import Filter
 from calibration.balances.problem import Problem
-from calibration.balances.view import NYQUIST, STANDSTILLS, View, choose_rows, fade
+from calibration.balances.view import STANDSTILLS, View, choose_rows, fade
+from calibration.balances.width import NYQUIST
 from calibration.decide.heldout import cross_validate
 from calibration.inputs.run import Run, numbers
 from calibration.look.delay import Make, Timed, left_by_the_declared
@@ -56,8 +58,10 @@ def _quick_waves_show(view: View, p: Problem) -> bool:
         return False
     session = np.zeros_like(view.file) if view.rig.runs.get("origin") == "shared" else view.file
     waved = np.hstack([sine_columns(view.x * k, session) for k in quick])
-    second = view.second(view.x)  # what the wider filter takes off the acceleration is no wave
-    known = np.column_stack([p.base, view.at(second - view.smoothed(second))])
+    known, second = p.base, view.second(view.x)
+    if view.response.channel != "acceleration":  # else the waves are in it
+        # what the wider filter takes off the acceleration is no wave
+        known = np.column_stack([known, view.at(second - view.smoothed(second))])
     both = np.hstack([known, waved[view.rows]])
     own = waved @ solve(both[p.train], p.y[p.train])[known.shape[1] :]
     kept = np.std(wide(own, view.segment)[view.ok]) > HARDLY * np.std(own[view.ok])
@@ -95,6 +99,14 @@ def few_values(records: list[Run], view: View, p: Problem) -> str:
     )
 
 
+def _no_sign(y: Array) -> bool:
+    """Whether `y` (n,) has one sign and comes near zero, where a signed one would go through it.
+
+    What a weight pulls one way stays away from it.
+    """
+    return bool(np.ptp(np.sign(y)) == 0 and np.min(np.abs(y)) < np.std(y))
+
+
 def doubts(view: View, told: Balance) -> list[str]:
     """What makes an answer worth little: a floor far above what is left, an effort without its sign."""
     channel, s, unit = view.response.channel, told.selection, view.unit
@@ -104,7 +116,7 @@ def doubts(view: View, told: Balance) -> list[str]:
         out.append(f"{channel}: its floor is {rest}: what is smaller than that does not show")
     y, way = view.columns.get(channel), view.direction[view.ok]
     there, back = sorted((int(np.sum(way > 0)), int(np.sum(way < 0))))
-    one_sign = y is not None and there > BOTH_WAYS * back and np.ptp(np.sign(y[view.ok])) == 0
+    one_sign = y is not None and there > BOTH_WAYS * back and _no_sign(y[view.ok])
     brakes = s.problem.named(s.after).get("coulomb")
     pulled = any(n.startswith(TOLD_BY) for n, _ in s.problem.base_labels)
     if one_sign and not pulled and brakes is not None and brakes.value <= LITTLE * float(np.std(s.problem.y)):
@@ -113,11 +125,17 @@ def doubts(view: View, told: Balance) -> list[str]:
 
 
 def turned(view: View, problem: Problem) -> list[str]:
-    """Turn the response's sign, in place, where masses and friction together come out negative.
+    """Turn the response's sign, in place, where masses and friction together come out negative, or a second
+    sensor falls as the first one rises.
 
     The sign convention is then the other one; a note says so.
     """
     r, rows, x = view.response, problem.train, problem.base
+    if r.channel == "position2" and (r.ratio or problem.plain_fit(rows)[0].get("scale", 0.0)) < 0.0:
+        view.response = replace(r, gain=-r.gain, ratio=None if r.ratio is None else -r.ratio)
+        return [
+            f"{r.channel}: falls as the position rises. Its sign, and that of what is found, is turned here"
+        ]
     if not r.is_force or r.channel == "acceleration":
         return []
     # neither a weight that nobody declared must turn the sign, nor a spring or a stop

@@ -1,6 +1,7 @@
 """`schmidt rig`: what was understood of a drive's files, before anything is fitted."""
 
 from collections.abc import Iterable, Iterator
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -9,12 +10,14 @@ from jinja2 import Environment, FileSystemLoader
 from calibration.balances.balance import problem_of
 from calibration.balances.thresholds import FEWEST_ROWS
 from calibration.balances.view import WINDOW, view_of
+from calibration.balances.width import NARROW, USUAL
 from calibration.decide.accept import least_share
 from calibration.inputs.declaration import Response, Rig
 from calibration.inputs.logs import read_drive
 from calibration.inputs.rigfile import load_rig
 from calibration.inputs.run import Run, Signal, signal_of
 from calibration.inputs.thresholds import MOST_POINTS
+from calibration.look.settled import one_filter
 from calibration.report.plots import drawn, figure
 
 # candidates that a balance has before one is known to be none of it. ASSUMPTION
@@ -67,12 +70,17 @@ def _power(records: list[Run], rig: Rig, response: Response) -> Iterator[str]:
     the smallest line that would have a name beside a rest as large as the response is now."""
     if rig.motors is not None or rig.drifts or sum(r.rows for r in records) < FEWEST_ROWS:
         return
-    view = view_of(records, rig, response)
-    p = problem_of(view, records, [])
+    view, finer = (view_of(records, rig, response, limits) for limits in (USUAL, NARROW))
+    made = partial(problem_of, view, records, [])
+    if view.dynamic:
+        one_filter(view, made)
+    p = made()
     if not (p.train.any() and p.test.any()):
         return
     width = WINDOW * view.sigma * view.period_s
     through = f"a filter of {width:.3g} s" if view.filter.sigma else "no filter"
+    if finer.wide < view.wide:
+        through += f" ({WINDOW * finer.wide * view.period_s:.3g} s where that shows no name)"
     yield f"{response.channel}: {p.train.sum()} rows to fit through {through}, {p.blocks} independent blocks"
     span = float(np.ptp(view.x[view.rows][p.train]))
     turns = [f"{span / g.period:.4g} of {g.name}" for g in rig.stages if g.period]
