@@ -65,6 +65,22 @@ def test_cogging_of_both_motors_is_one_wave_of_the_axis(low: PlantModel) -> None
     assert row["torque_Nm"] == pytest.approx(2 * 0.02 * RATIO * abs(math.cos(apart / 2)), abs=1e-3)
 
 
+def test_ripple_of_both_motors_pulls_against_itself(low: PlantModel, tmp_path: Path) -> None:
+    """Torque is constant times current, A pulls in + and B in -: two waves, apart by their angles."""
+    parameters = {"cycles": Number(37.0, "1", ""), "ripple": Number(0.2, "1", "")}
+    model = with_effects(low, "ra", (EffectModel("torque_ripple", parameters=parameters),))
+    (row,), _ = written.lines(model, "ra")
+    drive = written.drive_of(model, model.axes.ra)
+    a, b = (
+        0.2 * model.axes.ra.motor.torque_constant.si * RATIO * amperes * np.exp(37j * RATIO * lead)
+        for amperes, lead in zip(drive.currents, drive.motors, strict=True)
+    )
+    assert drive.currents[0] > drive.currents[1] > 0
+    assert row["torque_Nm"] == pytest.approx(abs(a - b), abs=1e-3)
+    written.write(tmp_path / "c.yaml", model, "ra")
+    assert "friction at 15.041 arcsec/s," in (tmp_path / "c.yaml").read_text()
+
+
 def test_the_drive_turns_friction_within_the_bristles_travel(low: PlantModel) -> None:
     f = low.axes.ra.friction
     rate = 15.041 * ARCSEC
