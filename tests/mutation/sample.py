@@ -22,6 +22,6 @@ def drawn(cases: Mapping[str, Sequence[Mutant]], count: int, seed: int) -> dict[
 
 
 def interval(killed: int, total: int) -> tuple[float, float]:
-    """Wilson's of a share, per cent."""
+    """Wilson's of a share, per cent. No room is imported for it: that would hide what its import runs."""
     low, high = binomtest(killed, total).proportion_ci(SURE, method="wilson")
     return 100 * float(low), 100 * float(high)
