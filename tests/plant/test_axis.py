@@ -68,3 +68,12 @@ def test_a_drive_turns_the_encoders_by_their_steps() -> None:
     assert angle > 0 and rate > 0
     turned = (plant.ra.absolute(after_ns) - before[0]) % 2**29
     assert turned == pytest.approx(angle / (2 * pi) * 2**29, rel=1e-3)
+
+
+def test_the_truth_is_that_of_the_time_that_is_asked_for() -> None:
+    plant, other = Plant(bare(), 1), Plant(bare(), 1)
+    for each in (plant, other):
+        each.ra.drive(0, 0.5, 0.05)
+    other.advance(10_000_000_000)
+    assert plant.ra.truth(10_000_000_000) == other.ra.truth(10_000_000_000)
+    assert plant.ra.truth(10_000_000_000)[0] > 0
