@@ -109,3 +109,10 @@ def test_what_motors_and_supply_do(
 ) -> None:
     (value,) = evaluate(name, at(**columns), numbers)
     assert value == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("motor", [0.0, 1.0])
+def test_cogging_is_a_wave_of_the_motor_it_belongs_to(motor: float) -> None:
+    numbers = {"cycles": 20.0, "amplitude": 0.03, "phase": 0.7, "motor": 1.0}
+    (torque,) = evaluate("motor_cogging", at(MOTOR_ANGLE=0.31, MOTOR=motor), numbers)
+    assert torque == pytest.approx(0.0 if motor else 0.03 * sin(20.0 * 0.31 + 0.7))
