@@ -11,7 +11,7 @@ BESIDES = {
     "bus": ("tests/boards/chips/mcp2515",),
     "calibration/decide": ("tests/calibration",),
     "scenarios": ("tests/doors", "tests/studies"),
-    "plant": ("tests/docs/test_reference.py", "tests/studies/objective/test_observer.py"),
+    "plant": ("tests/studies/objective/test_observer.py",),
 }
 """Tests outside a room's own that judge its modules, too."""
 UNCOMPILED = ("plant", "plant/kernels")
