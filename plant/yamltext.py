@@ -5,6 +5,7 @@ nested deeper than the parser's stack. Both are seen in the event stream, which 
 """
 
 import re
+import stat
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -52,14 +53,15 @@ def nearest(word: str, words: Iterable[str]) -> str:
 def check_regular(path: Path) -> None:
     """Raise TextError for what is there and is no regular file: a pipe or a device may never end."""
     try:
-        if path.exists() and not path.is_file():
-            raise TextError("cannot be read: it is no regular file")
+        mode = path.stat().st_mode
+    except (FileNotFoundError, NotADirectoryError):
+        return
     except OSError as error:
         raise TextError(f"cannot be read: {error.strerror}") from None
-    except ValueError as error:
-        if isinstance(error, TextError):
-            raise
+    except ValueError:
         raise TextError("no file can have this name") from None
+    if not stat.S_ISREG(mode):
+        raise TextError("cannot be read: it is no regular file")
 
 
 def read_text(path: Path, limit: int = MAX_BYTES) -> str:

@@ -17,7 +17,6 @@ HIGHEST = 4000  # cycles within the span that are searched. ASSUMPTION
 PER_ROW = 0.45  # part of a period per row: quicker is not seen. ASSUMPTION: a little below the Nyquist limit
 FINE = 8  # bins per cycle of the quickest line. ASSUMPTION
 FEWEST_ROWS = 20  # rows, fewest, for a spectrum. ASSUMPTION
-MOST_BINS = 2**21  # bins of a spectrum at most, for its memory. ASSUMPTION
 AROUND = 12  # share of 1 / span to either side, that a line is compared with. ASSUMPTION
 AVOIDED = 0.75  # share of 1 / span within which a frequency is avoided. ASSUMPTION
 TRIED = 60  # bins that are tried for every line that is wanted. ASSUMPTION
@@ -73,8 +72,8 @@ def standing_out(e: Array, z: Array, label: NDArray[np.int64], want: Wanted) -> 
         top = min(top, PER_ROW / float(np.median(step[step > 0])))
     if top <= 2 * want.least:
         return []
-    cells = int(min(np.ceil(want.span * top * FINE), MOST_BINS))
-    size, width = power_of_two(max(2 * cells, 16)), want.span / cells
+    cells = int(np.ceil(want.span * top * FINE))
+    size, width = power_of_two(2 * cells), want.span / cells
     power, energy = np.zeros(size // 2 + 1), float(np.sum(e**2))
     for k in np.unique(label):
         rows = label == k
@@ -84,7 +83,7 @@ def standing_out(e: Array, z: Array, label: NDArray[np.int64], want: Wanted) -> 
     if want.avoid is not None:
         reach = AVOIDED / want.span
         use &= np.searchsorted(want.avoid, f + reach) == np.searchsorted(want.avoid, f - reach, side="right")
-    ratio = power / np.maximum(around(power, max(int(AROUND * size * width / want.span), 8)), 1e-300)
+    ratio = power / np.maximum(around(power, int(AROUND * size * width / want.span)), 1e-300)
     ratio[~use] = 0.0
     large = 2 * power > LARGE * energy  # of a sine of amplitude A: A^2 / 2 over the mean square
     found: list[float] = []
@@ -92,7 +91,7 @@ def standing_out(e: Array, z: Array, label: NDArray[np.int64], want: Wanted) -> 
     for k in np.lexsort((-ratio, last, ratio < LARGE_STANDS_OUT))[: TRIED * want.most]:
         if ratio[k] < LARGE_STANDS_OUT or len(found) >= want.most:
             break
-        highest = 0 < k < len(ratio) - 1 and power[k] >= max(power[k - 1], power[k + 1])
+        highest = power[k] >= max(power[k - 1], power[k + 1])  # the ends are not searched
         clear = highest and (ratio[k] >= STANDS_OUT or large[k])
         if clear and all(abs(f[k] - g) * want.span > 1.0 for g in found):
             found.append(float(f[k]))

@@ -13,7 +13,7 @@ import serial
 
 from bus.can.frame import Frame
 from bus.outside.external import open_bus
-from bus.protocol.report import REPORT_BYTES, pack_report, slot, unpack_commands
+from bus.protocol.report import REPORT_BYTES, ReportError, pack_report, slot, unpack_commands
 from host.logs.files import reason as reason_of
 
 READ_S = 0.2
@@ -134,9 +134,10 @@ class CanPort:
         message = self._bus.recv(READ_S)
         if message is None or message.is_extended_id or message.is_error_frame or len(message.data) != 8:
             return b""
-        frame = Frame(message.arbitration_id, bytes(message.data))
-        of_a_board = 0x100 <= frame.identifier < 0x400 or 0x700 <= frame.identifier < 0x780
-        return pack_report([slot(frame)]) if of_a_board else b""
+        try:
+            return pack_report([slot(Frame(message.arbitration_id, bytes(message.data)))])
+        except ReportError:  # of nobody in the protocol
+            return b""
 
     def write(self, data: bytes) -> None:
         """The commands of one OUT report."""

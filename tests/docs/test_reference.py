@@ -17,8 +17,10 @@ def text_of(name: str) -> str:
     return (REFERENCE / name).read_text(encoding="utf-8")
 
 
-def test_the_pages_are_what_the_code_says(capsys: pytest.CaptureFixture[str]) -> None:
-    assert generate.main(["--check"]) == 0, capsys.readouterr().err
+@pytest.mark.parametrize("name", sorted(generate.PAGES.keys() - {"effects.md"}))  # that one is the plant's
+def test_a_page_is_what_the_code_says(name: str) -> None:
+    """Else run `python -m docs.generate`."""
+    assert (REFERENCE / name).read_text(encoding="utf-8") == generate.PAGES[name]()
 
 
 def test_an_old_page_is_noticed_and_written(

@@ -1,4 +1,4 @@
-"""Runs tests on the mutants of a room: `python -m tests.mutation ROOM [--only PATH] [--part K/N]`.
+"""Runs tests on the mutants of a room: `python -m tests.mutation ROOM [--only PATH] [--sample N]`.
 
 A mutant meets the tests that execute its line, the quickest first, up to the first that fails. Coverage has
 told which these are. Everything is imported and collected once; each mutant is a forked child.
@@ -7,7 +7,7 @@ told which these are. Everything is imported and collected once; each mutant is 
 import argparse
 import os
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Container
 from functools import partial
 from pathlib import Path
 
@@ -17,6 +17,7 @@ from tests.mutation.covering import Covering
 from tests.mutation.operators import Mutant, mutants
 from tests.mutation.ratchet import fallen, key, reasons, tighten
 from tests.mutation.rooms import AIMS, UNCOMPILED, judging, modules
+from tests.mutation.sample import drawn, interval
 from tests.mutation.session import Test, forked, outcomes, run
 from tests.mutation.trial import Bench
 
@@ -33,7 +34,12 @@ def options() -> argparse.Namespace:
     parser.add_argument("--seconds", type=float, default=10, help="of tests at most, for each mutant")
     parser.add_argument("--jobs", type=int, choices=(1, 2), default=1, help="children at a time")
     parser.add_argument("--out", type=Path, help="file for the survivors")
-    return parser.parse_args()
+    parser.add_argument("--sample", type=int, help="so many mutants, drawn at random over all modules")
+    parser.add_argument("--seed", type=int, default=1, help="of that sample")
+    asked = parser.parse_args()
+    if asked.sample is not None and (asked.sample < 1 or asked.ratchet or asked.tighten):
+        parser.error("a sample has at least one mutant, and a floor is that of all")
+    return asked
 
 
 class Loop:
@@ -53,11 +59,18 @@ class Loop:
             return True
         first, parts = (int(number) for number in self.asked.part.split("/"))
         paths = [each for each in modules(self.asked.room) if self.asked.only in each]
-        for path in paths[first - 1 :: parts]:
-            self.module(path)
+        known = reasons()
+        cases = {path: unexplained(path, known) for path in paths[first - 1 :: parts]}
+        if self.asked.sample:
+            cases = drawn(cases, self.asked.sample, self.asked.seed)
+        for path, some in cases.items():
+            self.module(path, some)
         aim = AIMS[self.asked.room]
         self.tell(f"in all {self.killed} of {self.total} killed: "
                   f"{100 * self.killed / max(self.total, 1):.1f} %, aim {aim} %")  # fmt: skip
+        if self.asked.sample and self.total:
+            low, high = interval(self.killed, self.total)
+            self.tell(f"of all mutants {low:.1f} to {high:.1f} % (seed {self.asked.seed})")
         return True
 
     def tell(self, text: str) -> None:
@@ -66,13 +79,11 @@ class Loop:
             with self.asked.out.open("a", encoding="utf-8") as file:
                 file.write(text + "\n")
 
-    def module(self, path: str) -> None:
-        """All mutants of one module."""
-        source, known = Path(path).read_text(encoding="utf-8"), reasons()
-        cases = [each for each in mutants(source) if key(path, each.label) not in known]
+    def module(self, path: str, cases: list[Mutant]) -> None:
+        """These mutants of one module."""
         if not cases:
             return
-        anew = partial(self.bench.anew, compile(source, os.path.abspath(path), "exec"))
+        anew = partial(self.bench.anew, compile(cases[0].source, os.path.abspath(path), "exec"))
         every = self.within(self.covering.of_module(path))
         if every and any(self.imported(path, each) for each in cases) and not forked(partial(anew, every)):
             self.broken.append(path)
@@ -115,6 +126,12 @@ class Loop:
                 break
             found[name] = self.covering.tests[name]
         return found
+
+
+def unexplained(path: str, known: Container[str]) -> list[Mutant]:
+    """The mutants of a module, but for those whose survival has a reason that is known."""
+    source = Path(path).read_text(encoding="utf-8")
+    return [each for each in mutants(source) if key(path, each.label) not in known]
 
 
 def _spent() -> float:

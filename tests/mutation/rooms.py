@@ -10,6 +10,8 @@ AIMS = {
 BESIDES = {
     "bus": ("tests/boards/chips/mcp2515",),
     "calibration/decide": ("tests/calibration",),
+    "scenarios": ("tests/doors", "tests/studies"),
+    "plant": ("tests/studies/objective/test_observer.py",),
 }
 """Tests outside a room's own that judge its modules, too."""
 UNCOMPILED = ("plant", "plant/kernels")

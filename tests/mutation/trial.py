@@ -20,7 +20,7 @@ import pytest
 
 from tests.mutation.session import Test, run
 
-OURS = ("bus", "boards", "plant", "host", "calibration", "scenarios", "tests", "schmidt")
+OURS = ("bus", "boards", "plant", "host", "calibration", "scenarios", "tests", "docs", "schmidt")
 MOST_BYTES = 4 << 30
 """Of memory: a mutant that never ends does not take the machine's."""
 

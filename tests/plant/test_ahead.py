@@ -44,6 +44,26 @@ def test_what_cannot_be_built_is_said(tmp_path: Path, monkeypatch: pytest.Monkey
     assert not (tmp_path / "library").exists()
 
 
+def test_a_new_library_takes_the_place_of_old_ones(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its folder may have to be made; what else lies there stays."""
+    folder = tmp_path / "some" / "library"
+    monkeypatch.setattr(ahead, "LIBRARY", folder)
+
+    def compiled_into(place: Path) -> Path:
+        made = place / "any.so"
+        made.write_bytes(b"code")
+        return made
+
+    monkeypatch.setattr(builder, "_compile", compiled_into)
+    assert builder.build()
+    assert not builder.build(), "nothing to do the second time"
+    assert [each.read_bytes() for each in folder.iterdir()] == [b"code"]
+    ahead.file().rename(folder / f"{ahead.NAME}-old.so")
+    (folder / "other.txt").touch()
+    assert builder.build()
+    assert {each.name for each in folder.iterdir()} == {ahead.file().name, "other.txt"}
+
+
 @pytest.mark.slow
 def test_it_is_the_just_in_time_kernel_to_the_bit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ahead, "LIBRARY", tmp_path / "library")

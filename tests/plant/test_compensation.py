@@ -65,6 +65,39 @@ def test_cogging_of_both_motors_is_one_wave_of_the_axis(low: PlantModel) -> None
     assert row["torque_Nm"] == pytest.approx(2 * 0.02 * RATIO * abs(math.cos(apart / 2)), abs=1e-3)
 
 
+def test_ripple_of_both_motors_pulls_against_itself(low: PlantModel, tmp_path: Path) -> None:
+    """Torque is constant times current, A pulls in + and B in -: two waves, apart by their angles."""
+    parameters = {"cycles": Number(37.0, "1", ""), "ripple": Number(0.2, "1", "")}
+    model = with_effects(low, "ra", (EffectModel("torque_ripple", parameters=parameters),))
+    (row,), _ = written.lines(model, "ra")
+    drive = written.drive_of(model, model.axes.ra)
+    a, b = (
+        0.2 * model.axes.ra.motor.torque_constant.si * RATIO * amperes * np.exp(37j * RATIO * lead)
+        for amperes, lead in zip(drive.currents, drive.motors, strict=True)
+    )
+    assert drive.currents[0] > drive.currents[1] > 0
+    assert row["torque_Nm"] == pytest.approx(abs(a - b), abs=1e-3)
+    # a wave C cos + S sin is the real part of (C - i S) e^(i order angle); the board pushes against it
+    pushed = complex(float(row["cosine_steps"]), -float(row["sine_steps"])) * drive.per_step
+    assert pushed == pytest.approx(-(a - b), abs=0.01 * abs(a - b))
+    written.write(tmp_path / "c.yaml", model, "ra")
+    assert "friction at 15.041 arcsec/s," in (tmp_path / "c.yaml").read_text()
+
+
+def test_each_motor_leads_by_its_play_and_its_train_s_wind_up(low: PlantModel) -> None:
+    """A pulls with all of the effort, B back with a tenth of it, both with the bias: 1.2 times 1 % of 3000
+    steps. A train is half as stiff as both."""
+    part = with_effects(low, "ra", ()).axes.ra
+    drive = written.drive_of(low, part)
+    effort = drive.friction / drive.per_step
+    duties = effort + 36, 0.1 * effort + 36
+    half, train = 0.5 * part.gear.backlash.si, 0.5 * part.gear.stiffness.si
+    ahead, behind = (half + per_step(low) / 0.9 * duty / train for duty in duties)
+    assert drive.motors == pytest.approx((ahead, -behind), rel=1e-6)
+    amperes = 24.0 / 3000 / (part.motor.resistance.si + 0.085 + 0.1)
+    assert drive.currents == pytest.approx([amperes * duty for duty in duties], rel=1e-6)
+
+
 def test_the_drive_turns_friction_within_the_bristles_travel(low: PlantModel) -> None:
     f = low.axes.ra.friction
     rate = 15.041 * ARCSEC

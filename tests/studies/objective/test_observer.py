@@ -7,7 +7,7 @@ from boards.axis.observer import Observer
 from bus.protocol import AxisParameter
 from plant.compensation import drive_of
 from plant.model import get, load, with_value
-from plant.observer import SIZE, designed, lumped, sections
+from plant.observer import SIZE, designed, lumped
 from plant.parts import PlantModel
 from scenarios.language.configure import parameters_of
 from scenarios.studies.objective.bench import MODES, hold
@@ -48,22 +48,6 @@ def test_the_loop_is_stable_where_the_axis_alone_is_not() -> None:
     assert max(abs(np.linalg.eigvals(closed))) < 1.0
     seen = a @ (np.eye(SIZE) - np.outer(correction, np.eye(SIZE)[0]))
     assert max(abs(np.linalg.eigvals(seen))) < 1.0
-
-
-def test_sections_are_the_observer_in_other_words() -> None:
-    """Both get the same random efforts and angles; what they answer is the same."""
-    a, b, gain, correction = designed(LEAPS, LEAPS.axes.ra)
-    parts, through = sections(LEAPS, LEAPS.axes.ra)
-    count = 2 * np.pi / 112_896_000
-    state, halves = np.zeros(SIZE), np.zeros((len(parts), 2))
-    for effort, angle in np.random.default_rng(3).normal(0, (20, 1), (300, 2)):
-        state = state + correction * (angle * count - state[0])
-        assert -gain @ state == pytest.approx(halves[:, 0].sum() + through * angle, rel=1e-6, abs=1e-6)
-        state = a @ state + b[:, 0] * effort
-        for half, (trace, determinant, g1, g0, h1, h0) in zip(halves, parts, strict=True):
-            first = half[0]
-            half[0] = trace * first + half[1] + g1 * effort + h1 * angle
-            half[1] = -determinant * first + g0 * effort + h0 * angle
 
 
 @pytest.mark.parametrize("mode", MODES)
