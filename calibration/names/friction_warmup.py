@@ -5,15 +5,12 @@ from itertools import product
 import numpy as np
 
 from calibration.names.inplant import Facts, Made, as_found
-from calibration.names.name import Array, Beside, Candidate, Finding, Name, Scene, candidate, grid
+from calibration.names.name import Array, Beside, Candidate, Finding, Name, Scene, candidate, grid, unstated
 from calibration.names.scene import since_first
 
 # part of the time from the first row to the last: time constants that are tried. ASSUMPTION
 PARTS = (0.05, 0.1, 0.2, 0.4, 0.8)
 LONGEST = 1.0  # times that time, for a time constant: a slower one is a slope. ASSUMPTION
-# times the declared friction, that it has at first beyond that. ASSUMPTION: a lubricant's viscosity halves
-# with some 10 K, and a drive warms by 20 K at most within a log
-MOST_DEPTH = 3.0
 OF_COULOMB = "of_coulomb"
 
 
@@ -40,9 +37,9 @@ def columns(s: Scene) -> list[Candidate]:
 
 
 def lacks(s: Scene) -> str:
-    """Friction, of which a depth is a part."""
-    stated = s.pair is not None or any(s.declared.get(n, 0.0) > 0 for n in ("coulomb", "viscous"))
-    return "" if stated else "friction of the declared model ('coulomb', 'viscous'), which changes"
+    """Friction, of which a depth is a part: beside none that knows no speed the warm-up takes its place."""
+    known = s.pair is not None or any(s.declared.get(n, 0.0) > 0 for n in ("coulomb", "viscous"))
+    return "" if known and not unstated(s, "coulomb") else "declared friction ('coulomb'), which changes"
 
 
 def _friction(s: Scene, change: Array, of_coulomb: bool = False) -> Array:
@@ -61,7 +58,7 @@ def _cooling(s: Scene, name: str, since: Array, of_coulomb: bool) -> list[Candid
 
     which = {OF_COULOMB: (1.0, "0 all friction, 1 what knows no speed")} if of_coulomb else {}
     along = (name, [part * span for part in PARTS], "s")
-    return grid(NAME.name, shape, "depth", along=along, beside=which, sign=-1, most=MOST_DEPTH)
+    return grid(NAME.name, shape, "depth", along=along, beside=which, sign=-1)
 
 
 def to_plant(f: Finding, facts: Facts) -> Made:

@@ -170,7 +170,7 @@ def test_friction_that_nobody_stated_is_there_from_the_start(begins: float, stat
     rig = SimpleNamespace(estimate=("viscous", "coulomb") if stated else ("viscous",))
     view = SimpleNamespace(rig=rig, direction=BLOCKS_WAY)
     y = 2.0 * np.where(begins <= T, BLOCKS_WAY, 0.0)
-    s = there_from_the_start(chosen(y, brake(BLOCKS_WAY)), scene(view=view, unit="N m"))
+    s = there_from_the_start(chosen(y, brake(BLOCKS_WAY)), scene(view=view, unit="N m", both=True))
     assert [c.name for c in s.candidates] == [name]
     if name == "coulomb_change":
         assert s.chosen[0].fit.beta[-1] == pytest.approx(2.0, abs=0.01) and s.chosen[0].held.sure
