@@ -10,6 +10,7 @@ from scipy.ndimage import gaussian_filter1d
 
 from calibration.arrays import Array
 from calibration.errors import CalibrationInputError
+from calibration.inputs.clock import STRAY
 from calibration.inputs.declaration import GUESSED
 from calibration.inputs.loose import Loose, read_loose, said
 from calibration.inputs.repair import counter_length
@@ -108,14 +109,14 @@ def _flow(key: str, value: Any, why: str) -> str:
 def _clock(d: _Draft, loose: Loose) -> None:
     """The time: by its name, else a column that goes on evenly."""
     steps = {c: np.diff(x) for c, x in d.left.items() if np.isfinite(loose.columns[c]).all()}
-    forward = {c: s for c, s in steps.items() if (s >= 0).all() and np.median(s) > 0}
+    forward = {c: s for c, s in steps.items() if np.mean(s < 0) <= STRAY and np.median(s) > 0}
     named = [c for c in forward if c == loose.stamp or said(c).channel == "time"]
     even = [c for c, s in forward.items() if not said(c).channel and np.quantile(s, 0.9) < 3 * np.median(s)]
     if not (found := [*named, *even]):
         d.fields["sample_period_s"] = 1.0, "the log has no time; give the s between two rows"
         return
     column = found[0]
-    forward_steps, says = forward[column], said(column)
+    forward_steps, says = np.maximum(forward[column], 0.0), said(column)
     step = float(np.median(forward_steps))
     scale, why = (says.scale, "") if says.channel == "time" and says.unit else (1.0, "")
     if not says.unit and column != loose.stamp:

@@ -9,17 +9,17 @@ import numpy as np
 
 from calibration.arrays import Array, Mask
 from calibration.errors import CalibrationInputError
+from calibration.inputs.clock import check_clock, in_order, runs_of_clock
 from calibration.inputs.counters import count_wraps, read_signed, unwrap
 from calibration.inputs.declaration import Column, Rig
 from calibration.inputs.matlab import read_matlab
 from calibration.inputs.recordings import RECORDINGS
 from calibration.inputs.repair import repair
 from calibration.inputs.rows import steady_stamps
-from calibration.inputs.run import Run, signal_of
+from calibration.inputs.run import Repair, Run, signal_of
 from calibration.inputs.text import Long, heading, load_utf8, read_long
 from calibration.inputs.thresholds import LARGEST_NUMBER
 
-FROM_THE_FIRST = 3.0  # steps of a clock from its first stamp, where it starts again. ASSUMPTION
 #: files that are no text, by the ending of their name
 READERS = {".mat": read_matlab, ".npz": read_matlab, **RECORDINGS}
 
@@ -53,15 +53,6 @@ def read_table(path: Path, rig: Rig, text: str | None = None) -> list[Run]:
     return [_run(path, rig, raw, name, logged) for raw, name in zip(found, names, strict=True)]
 
 
-def runs_of_clock(raw: dict[str, Array], t: Array) -> list[dict[str, Array]]:
-    """A table, in parts where its clock `t` (n,) starts again from its first stamp; else it stays one."""
-    back = np.flatnonzero(np.diff(t) < 0) + 1
-    if not len(back) or np.any(t[back] - t[0] > FROM_THE_FIRST * np.median(np.abs(np.diff(t)))):
-        return [raw]
-    edges = itertools.pairwise([0, *back, len(t)])
-    return [{name: x[a:b] for name, x in raw.items()} for a, b in edges]
-
-
 def _run(path: Path, rig: Rig, raw: dict[str, Array], name: str, logged: dict[str, Array]) -> Run:
     columns: dict[str, Array] = {}
     counted = {
@@ -89,7 +80,13 @@ def _run(path: Path, rig: Rig, raw: dict[str, Array], name: str, logged: dict[st
         columns["t" if channel == "time" else channel] = values
     columns.setdefault("t", _even(rig, rows))
     t = columns["t"]
-    _check_clock(path, t, str(rig.columns["time"].column) if "time" in rig.columns else "time")
+    clock = str(rig.columns["time"].column) if "time" in rig.columns else "time"
+    _refuse(path, ~np.isfinite(t), "is empty", clock)
+    kept = in_order(t)
+    if stray := len(t) - len(kept):
+        raw, columns = ({k: x[kept] for k, x in part.items()} for part in (raw, columns))
+        t = columns["t"]
+    check_clock(path, t, clock)
     columns["t"] = t - t[0]
     for channel, where in rig.columns.items():  # a column that is late by delay_s tells of earlier times
         if where.delay_s and channel != "time":
@@ -99,6 +96,9 @@ def _run(path: Path, rig: Rig, raw: dict[str, Array], name: str, logged: dict[st
         columns["run"] = raw[str(rig.runs["column"])]
     start_s = _start(path, rig, float(t[0]))
     run = Run(name, path, name, columns, raw, {"rig": rig.name}, logged=counted, start_s=start_s)
+    if stray:
+        note = f"{stray} rows have a stamp that leaps back or ahead of its neighbours: left out"
+        run.repairs.append(Repair("leap", "time", stray, float(stray), note))
     run.period_s = float(np.median(np.diff(columns["t"]))) if run.rows > 1 else 1.0
     run.signals = {
         c: signal_of(c, str(w.column), w.unit, columns["t" if c == "time" else c], wraps.get(c, 0))
@@ -125,15 +125,6 @@ def _refuse(path: Path, bad: Mask, why: str, name: str) -> None:
     """Raise CalibrationInputError for the first row that is `bad` (n,)."""
     if bad.any():
         raise CalibrationInputError(path, f"{why} in data row {int(np.argmax(bad)) + 1}", None, name)
-
-
-def _check_clock(path: Path, t: Array, name: str) -> None:
-    """Refuse a clock that does not go forward."""
-    _refuse(path, ~np.isfinite(t), "is empty", name)
-    if len(t) > 1 and not np.median(np.diff(t)) > 0:
-        raise CalibrationInputError(path, "does not advance", None, name)
-    for k in np.flatnonzero(np.diff(t) < 0)[:1]:
-        raise CalibrationInputError(path, f"time goes backwards from {t[k]:g} to {t[k + 1]:g}", k + 2, name)
 
 
 def _start(path: Path, rig: Rig, first: float) -> float | None:

@@ -70,6 +70,19 @@ def test_a_clock_that_starts_again_begins_a_run(tmp_path: Path) -> None:
         read(tmp_path, rows(np.where(np.arange(ROWS) < 100, t, t + 0.5), X, U))
 
 
+def test_a_few_stamps_that_leap_cost_their_rows_alone(tmp_path: Path) -> None:
+    """The first is of before a reset, one leaps ahead, one back; an hundredth of the rows may."""
+    t, stray = T.copy(), [0, 120, 201]
+    t[stray] = [1e3, 50.0, -3.0]
+    run = read(tmp_path, rows(t, X, U))
+    assert run.columns["position"].tolist() == np.delete(X, stray).tolist()
+    assert run.columns["t"] == pytest.approx(np.delete(T, stray) - T[1])
+    assert [(r.kind, r.rows) for r in run.repairs if r.channel == "time"] == [("leap", 3)]
+    t[10] = 60.0
+    with pytest.raises(CalibrationInputError, match="time goes backwards from 1000 to"):
+        read(tmp_path, rows(t, X, U))
+
+
 def test_a_word_that_is_no_stamp_names_its_line(tmp_path: Path) -> None:
     columns = COLUMNS.replace("unit: s}", "unit: s, format: iso}")
     with pytest.raises(CalibrationInputError, match=r"a.csv:2: column 't': 'noon' is no stamp of format"):
