@@ -123,7 +123,7 @@ def test_a_clock_that_runs_backwards_is_one_line(tmp_path: Path) -> None:
     (tmp_path / "rig.yaml").write_text(RIG)
     rows = "".join(f"{-0.1 * k:.1f},{k % 7},{k % 5}\n" for k in range(400))
     (tmp_path / "d.csv").write_text("t,x,u\n" + rows)
-    with pytest.raises(CalibrationInputError, match=r"d\.csv: no three rows follow each other in time"):
+    with pytest.raises(CalibrationInputError, match=r"d\.csv.*does not advance"):
         calibrate([tmp_path / "d.csv"], tmp_path / "rig.yaml", [], tmp_path / "out", plots=False)
 
 
