@@ -16,6 +16,9 @@ from calibration.decide.selection import NO_SCORES, Refusal, Selection
 from calibration.statistics.regression import under
 from calibration.statistics.surrogate import Scores, basis, orthonormal_blocks, score, together
 
+# friction that every drive has: where nobody stated it, it comes before what might stand in for it
+EXPECTED = ("coulomb_change", "viscous_change")
+
 
 def select(
     problem: Problem,
@@ -45,6 +48,7 @@ def _searched(
     problem: Problem, candidates: list[Candidate], most: int, margin: float, before: int
 ) -> Selection:
     search = _Search(Selection.of(problem), candidates, margin, before)
+    search.expect()
     search.pick(most)
     search.revise()
     return search.picks
@@ -82,9 +86,16 @@ class _Search:
     margin: float
     before: int
 
+    def expect(self) -> None:
+        """Accept what is expected by itself, before anything is searched for."""
+        for c in (c for name in EXPECTED for c in self.candidates if c.name == name):
+            found = self.accepted(self.picks, [c], tries=1, further=False)
+            self.picks = self.picks.keep([*self.picks.chosen, *found])
+
     def pick(self, most: int) -> None:
         """Accept effects, strongest first, until none is acceptable or `most` are there."""
-        p, left = self.picks.problem, list(self.candidates)
+        taken = {c.key for c in self.picks.candidates}
+        p, left = self.picks.problem, [c for c in self.candidates if c.key not in taken]
         if left and p.ar_order and p.blocks < limits.FEWEST_BLOCKS:  # they make the noise's filter, too
             seconds = limits.FEWEST_BLOCKS * p.block * p.period_s
             why = f"{SHORT}: coloured noise needs {limits.FEWEST_BLOCKS} independent blocks ({seconds:.0f} s)"
@@ -106,6 +117,8 @@ class _Search:
         replaced = False
         for k in range(len(self.picks.chosen)):
             first, *later = self.picks.candidates[k:]
+            if first.name in EXPECTED:
+                continue
             shares = (_shared(self.picks.problem, first, c) for c in later)
             if replaced or any(share > limits.APART for share in shares):
                 replaced |= self._look_again(k)

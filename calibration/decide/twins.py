@@ -15,8 +15,8 @@ from calibration.decide.scan import Contender, fit_with
 from calibration.decide.selection import Selection
 from calibration.decide.thresholds import LUCK_Z
 from calibration.finding import UNKNOWN
-from calibration.names import coulomb_change, gravity_imbalance
-from calibration.names.brake_drag import CHANGES, COMES
+from calibration.names import gravity_imbalance
+from calibration.names.brake_drag import CHANGES
 from calibration.names.lines import CLOCKED, on_clock
 from calibration.names.scene import Scene
 from calibration.statistics.regression import solve
@@ -50,22 +50,6 @@ def told_by_the_way(s: Selection, scene: Scene) -> Selection:
         offset = s.put(k, replace(s.chosen[k], candidate=replace(c, columns=step)))
         if not compare(s.problem, offset.model, s.model, s.after.whitener).sure:
             s = s.put(k, replace(s.chosen[k], candidate=replace(c, twins=(*c.twins, UNKNOWN))))
-    return s
-
-
-def there_from_the_start(s: Selection, scene: Scene) -> Selection:
-    """Friction that comes or goes, of a drive whose rig file states none, is there all the time unless
-    held-out rows refuse it."""
-    for k, c in enumerate(s.candidates):
-        for friction in coulomb_change.NAME.columns(scene) if c.name in COMES else ():
-            others = s.without(k)
-            found = fit_with(s.problem, others.columns, friction)
-            if found is None:
-                continue
-            always = s.put(k, found)
-            if not compare(s.problem, always.model, s.model, s.after.whitener).sure:
-                held = compare(s.problem, others.model, always.model, s.after.whitener)
-                s = s.put(k, replace(found, held=held))
     return s
 
 

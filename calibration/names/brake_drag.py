@@ -13,7 +13,6 @@ LESS = ("friction_warmup", "preload_change")  # friction that falls from some ti
 CHANGES = ("brake_drag", "preload_change")  # friction that is another from some time on
 VARIES = 0.3  # of the mean speed, rms, beyond which friction is no offset. ASSUMPTION
 IN_TIME = ("brake_drag", "friction_warmup")  # forces against the motion that come or go
-COMES = {*CHANGES, *IN_TIME}  # friction that changes along the log
 
 
 def to_plant(f: Finding, facts: Facts) -> Made:

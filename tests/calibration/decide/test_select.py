@@ -202,3 +202,25 @@ def test_what_is_true_alone_stands_against_what_is_around_it() -> None:
     have = [term("sag", sag), term("deadband", deadband), term("loss", loss)]
     s = select(problem(1.2 * loss[:, 0] + rng.standard_normal(ROWS)), have, rng, around=True)
     assert [c.name for c in s.candidates] == ["loss"]
+
+
+@pytest.mark.parametrize(("friction", "names"), [(1.0, ["coulomb_change"]), (0.0, [])])
+def test_friction_that_nobody_stated_comes_before_what_stands_in_for_it(
+    friction: float, names: list[str]
+) -> None:
+    """A brake from the third second on fits as well where luck was against the friction in the first two; and
+    what grows with the speed holds most of a friction."""
+    rng = np.random.default_rng(11)
+    speed = np.sin(np.arange(ROWS) / 41.0)
+    way, late = np.sign(speed), np.arange(ROWS) > 2.0 / PERIOD_S
+    luck = rng.standard_normal(ROWS)
+    have = [
+        term("brake_drag", (way * late)[:, None]),
+        term("load_friction", (way * np.abs(speed))[:, None]),
+        term("coulomb_change", way[:, None]),
+    ]
+    y = friction * way + 0.3 * luck - 0.7 * friction * way * ~late
+    s = select(problem(y), have, rng)
+    assert [c.candidate.name for c in s.chosen][:1] == names
+    rest = select(problem(y), have[:2], rng)
+    assert bool(rest.chosen) == bool(names) and rest.candidates[:1] == have[: len(names)]

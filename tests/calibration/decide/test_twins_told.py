@@ -13,7 +13,6 @@ from calibration.decide.scan import fit_with
 from calibration.decide.selection import Selection
 from calibration.decide.twins import (
     one_line,
-    there_from_the_start,
     told_by_the_clock,
     told_by_the_way,
     weight_first,
@@ -157,23 +156,6 @@ def test_an_offset_is_no_twin_of_what_has_no_onset_or_another_name_or_two_motors
 def test_the_offset_that_is_tried_begins_at_the_onset() -> None:
     """An offset that came at another time would explain less than friction one way only."""
     assert way_told(brake(ONE_WAY), clocks={"start": T - 30.0}) == ("friction_warmup",)
-
-
-BLOCKS_WAY = np.where(T % 20.0 < 10.0, 1.0, -1.0)
-
-
-@pytest.mark.parametrize(("begins", "stated", "name"), [
-    (0.0, False, "coulomb_change"), (50.0, False, "brake_drag"), (0.0, True, "brake_drag"),
-])  # fmt: skip
-def test_friction_that_nobody_stated_is_there_from_the_start(begins: float, stated: bool, name: str) -> None:
-    """A brake from 50 s on was picked; held-out rows say whether the friction came before."""
-    rig = SimpleNamespace(estimate=("viscous", "coulomb") if stated else ("viscous",))
-    view = SimpleNamespace(rig=rig, direction=BLOCKS_WAY)
-    y = 2.0 * np.where(begins <= T, BLOCKS_WAY, 0.0)
-    s = there_from_the_start(chosen(y, brake(BLOCKS_WAY)), scene(view=view, unit="N m", both=True))
-    assert [c.name for c in s.candidates] == [name]
-    if name == "coulomb_change":
-        assert s.chosen[0].fit.beta[-1] == pytest.approx(2.0, abs=0.01) and s.chosen[0].held.sure
 
 
 ANGLE = 0.2 * np.sin(2 * np.pi * T / 17.0)  # turns: less than one
