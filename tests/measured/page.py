@@ -62,7 +62,8 @@ of this repository. Measured on {day}. How the finder decides: [calibration](../
   Three changes were not noticed: a late load of one servo, a load a few per cent larger, and mains
   pick-up of the tribometer.
 - The rules were developed with these very logs in view. The figures say that they fit, not that they
-  generalise.
+  generalise. Of 42 other logs, met for the first time on 2026-11-27, 17 answers are right or hold the
+  right class. Ten are half right, twelve say nothing or another domain, and three have a wrong name alone.
 
 ## Found
 {found}
