@@ -75,7 +75,7 @@ def _between_sensors(s: Scene) -> list[Candidate]:
 def _thrown(s: Scene) -> list[Candidate]:
     """A driven side with little friction is thrown from flank to flank: it leads while the drive brakes."""
     a = acceleration(s.view)
-    usual = float(np.sqrt(np.mean(a[s.view.ok] ** 2))) if s.view.ok.any() else 0.0
+    usual = float(np.sqrt(np.mean(a[s.view.ok] ** 2)))
     if usual == 0:
         return []
     side = s.at(-np.tanh(a / (SIDES * usual)) / 2)

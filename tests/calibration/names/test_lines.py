@@ -71,6 +71,13 @@ def test_a_torques_line_has_others_within_its_cell_on_both_sides() -> None:
     off = [(c.order or 0.0) - ORDERS["shaft2"] for c in one.neighbours]
     assert min(off) < 0 < max(off)
     assert all(low < (c.order or 0.0) < high for c in one.neighbours)
+    # a fifth of a cell off, and no nearer than a twentieth or further than 0.35 of it
+    assert sorted(off) == pytest.approx([-0.2 / s.span * s.turn, 0.2 / s.span * s.turn])
+    for c, way in zip(one.neighbours, np.sign(off), strict=True):
+        assert c.shape is not None
+        for asked, part in ((way * 1e6, 0.35), (-way * 1e6, 0.05)):
+            bound = ORDERS["shaft2"] + way * part / s.span * s.turn
+            assert c.shape(np.array([asked])) == pytest.approx(c.shape(np.array([bound])))
 
 
 def test_an_order_moves_no_further_than_its_bounds() -> None:
