@@ -45,7 +45,7 @@ def look_at_response(drive: Drive, rig: Rig, options: Options) -> Looked:
         if not views:
             agreement = velocity_against_position(view, problem_of(view, records, options.hold_out).held)
         balance = look_at_forces(view, records, options)
-        if balance.missing and not _names(balance):
+        if balance.missing and not _explains(balance):
             tell(f"{response.channel}: through a narrower filter")
             finer = view_of(records, rig, response, NARROW)
             if finer.wide < view.wide and _names(other := look_at_forces(finer, records, options)):
@@ -99,6 +99,11 @@ def look_at_response(drive: Drive, rig: Rig, options: Options) -> Looked:
 def _names(b: Balance) -> bool:
     """Whether the response has an effect with a name."""
     return any(f.name != UNKNOWN and not f.of_column for f in b.findings)
+
+
+def _explains(b: Balance) -> bool:
+    """Whether what was found, with a name or without, takes anything off the held-out error."""
+    return bool(b.error["after"] < b.error["before"])
 
 
 def _check(records: list[Run], rig: Rig) -> None:

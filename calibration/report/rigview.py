@@ -80,7 +80,7 @@ def _power(records: list[Run], rig: Rig, response: Response) -> Iterator[str]:
     width = WINDOW * view.sigma * view.period_s
     through = f"a filter of {width:.3g} s" if view.filter.sigma else "no filter"
     if finer.wide < view.wide:
-        through += f" ({WINDOW * finer.wide * view.period_s:.3g} s where that shows no name)"
+        through += f" ({WINDOW * finer.wide * view.period_s:.3g} s where that shows nothing)"
     yield f"{response.channel}: {p.train.sum()} rows to fit through {through}, {p.blocks} independent blocks"
     span = float(np.ptp(view.x[view.rows][p.train]))
     turns = [f"{span / g.period:.4g} of {g.name}" for g in rig.stages if g.period]

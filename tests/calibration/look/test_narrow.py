@@ -21,36 +21,32 @@ from tests.calibration.test_drives import FORCE, motion
 LEFT = Left(times=9.0, part=0.9)
 
 
-@pytest.mark.parametrize(("usual", "finer", "taken"), [
-    ((), ("play",), "finer"), ((UNKNOWN,), ("play",), "finer"), (("presliding",), ("play",), "usual"),
-    ((), (UNKNOWN,), "usual"),
+@pytest.mark.parametrize(("takes", "finer", "taken"), [
+    (1.0, "play", "finer"), (1.1, "play", "usual"), (1.0, UNKNOWN, "usual"),
 ])  # fmt: skip
 def test_a_narrower_filter_is_taken_where_it_alone_shows_a_name(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, usual: Any, finer: Any, taken: str
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, takes: float, finer: str, taken: str
 ) -> None:
+    """takes: times what is left behind the usual filter, that was there before."""
     (tmp_path / "rig.yaml").write_text(FORCE)
     t, x, u = motion()
-    np.savetxt(
-        tmp_path / "d.csv",
-        np.column_stack([t, np.round(x, 3), u]),
-        delimiter=",",
-        header="t,x,u",
-        comments="",
-    )
+    columns = np.column_stack([t, np.round(x, 3), u])
+    np.savetxt(tmp_path / "d.csv", columns, delimiter=",", header="t,x,u", comments="")
     rig, seen, look = load_rig(tmp_path / "rig.yaml"), list[float](), response.look_at_forces
 
     def told(view: View, *more: Any) -> Balance:
         seen.append(view.wide)
-        names = (usual, finer)[len(seen) - 1]
+        name, which = ((UNKNOWN, "usual"), (finer, "finer"))[len(seen) - 1]
         real = look(view, *more)
-        found = [Finding(name, "T", "time") for name in names]
-        return replace(real, findings=found, missing=LEFT, remarks=[("usual", "finer")[len(seen) - 1]])
+        before = takes * real.selection.held.after
+        found = [Finding(name, "T", "time")]
+        return replace(real, findings=found, before=before, missing=LEFT, remarks=[which])
 
     monkeypatch.setattr(response, "look_at_forces", told)
     options = Options(hold_out=[], out=tmp_path, plant=None, replay=False, tell=lambda _: None)
     found = response.look_at_response(read_drive([tmp_path / "d.csv"], rig), rig, options)
     assert found.balances[0].remarks == [taken]
-    assert seen[1:] == [] if usual == ("presliding",) else seen[1] < seen[0]
+    assert seen[1:] == [] if takes > 1.0 else seen[1] < seen[0]
 
 
 @pytest.mark.parametrize("limits", [USUAL, NARROW])
