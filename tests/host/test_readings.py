@@ -14,6 +14,7 @@ from host.camera.models import GUIDE
 from host.client import Client
 from host.link import HidLink
 from host.logs import guidelog
+from host.logs.journal import Logs
 from host.logs.sensors import readings
 from host.procedures.autoguide import Guided
 from host.sky.catalogue import Star
@@ -28,9 +29,8 @@ def told(*frames: bytes) -> dict[str, str]:
     """Words and numbers of what these frames say."""
     link = HidLink(lambda *_: None)
     for each in frames:
-        link.measurements[each[0]] = each
-    client: Any = Client.__new__(Client)
-    client.link, client.latched_s = link, lambda *_: 0.0
+        link.measurements[each[0]], link.measured_ns[each[0]] = each, 0
+    client = Client(link, Logs())
     return dict(word.split("=") for word in readings(client, MOUNT).split())
 
 
