@@ -15,30 +15,32 @@ FROM_THE_FIRST = 3.0  # steps of a clock from its first stamp, where it starts a
 STRAY = 0.01
 
 
-def runs_of_clock(raw: dict[str, Array], t: Array) -> list[dict[str, Array]]:
-    """A table, in parts where its clock `t` (n,) starts again from its first stamp; else it stays one."""
+def parts_of_clock(raw: dict[str, Array], t: Array) -> list[tuple[dict[str, Array], int]]:
+    """A table by its clock `t` (n,), each part with the number of its rows that were left out.
+
+    It is one, without stray rows; or has parts where the clock starts again from its first stamp.
+    """
     back = np.flatnonzero(np.diff(t) < 0) + 1
-    stray = len(in_order(t)) < len(t)
-    if (
-        stray
-        or not len(back)
-        or np.any(np.abs(t[back] - t[0]) > FROM_THE_FIRST * np.median(np.abs(np.diff(t))))
-    ):
-        return [raw]
+    kept = in_order(t)
+    if not len(back) or len(kept) < len(t):
+        return [({name: x[kept] for name, x in raw.items()}, len(t) - len(kept))]
+    if np.any(np.abs(t[back] - t[0]) > FROM_THE_FIRST * np.median(np.abs(np.diff(t)))):
+        return [(raw, 0)]
     edges = itertools.pairwise([0, *back, len(t)])
-    return [{name: x[a:b] for name, x in raw.items()} for a, b in edges]
+    return [({name: x[a:b] for name, x in raw.items()}, 0) for a, b in edges]
 
 
 def in_order(t: Array) -> NDArray[np.int64]:
     """Rows of the longest part of a clock `t` (n,) that never goes back; all, where many are stray."""
     every = np.arange(len(t))
-    if not np.isfinite(t).all() or not np.any(np.diff(t) < 0):
+    back = int(np.sum(np.diff(t) < 0))  # every one of them costs a row
+    if not np.isfinite(t).all() or not 0 < back <= STRAY * len(t):
         return every
     ends, at, before = list[float](), list[int](), list[int]()
     for k, stamp in enumerate(t.tolist()):  # the least last stamp of a part of every length
         length = bisect_right(ends, stamp)
         before.append(at[length - 1] if length else -1)
-        ends[length:], at[length:] = [stamp, *ends[length + 1 :]], [k, *at[length + 1 :]]
+        ends[length : length + 1], at[length : length + 1] = [stamp], [k]
     kept = [at[-1]]
     while before[kept[-1]] >= 0:
         kept.append(before[kept[-1]])

@@ -9,7 +9,7 @@ import numpy as np
 
 from calibration.arrays import Array, Mask
 from calibration.errors import CalibrationInputError
-from calibration.inputs.clock import check_clock, in_order, runs_of_clock
+from calibration.inputs.clock import check_clock, parts_of_clock
 from calibration.inputs.counters import count_wraps, read_signed, unwrap
 from calibration.inputs.declaration import Column, Rig
 from calibration.inputs.matlab import read_matlab
@@ -47,10 +47,16 @@ def read_table(path: Path, rig: Rig, text: str | None = None) -> list[Run]:
             found = [one]
         else:
             found = [table.read(wanted, stamps)]
+    parts = [(raw, 0) for raw in found]
     if stamp is not None:
-        found = [part for raw in found for part in runs_of_clock(raw, raw[str(stamp.column)])]
-    names = [f"{path.stem}{{{k}}}" for k in range(1, len(found) + 1)] if len(found) > 1 else [path.stem]
-    return [_run(path, rig, raw, name, logged) for raw, name in zip(found, names, strict=True)]
+        parts = [part for raw in found for part in parts_of_clock(raw, raw[str(stamp.column)])]
+    names = [f"{path.stem}{{{k}}}" for k in range(1, len(parts) + 1)] if len(parts) > 1 else [path.stem]
+    runs = [_run(path, rig, raw, name, logged) for (raw, _), name in zip(parts, names, strict=True)]
+    for run, (_, stray) in zip(runs, parts, strict=True):
+        if stray:
+            note = f"stamps that leap back, or ahead of their neighbours: {stray} rows are left out"
+            run.repairs.append(Repair("leap", "time", stray, float(stray), note))
+    return runs
 
 
 def _run(path: Path, rig: Rig, raw: dict[str, Array], name: str, logged: dict[str, Array]) -> Run:
@@ -82,10 +88,6 @@ def _run(path: Path, rig: Rig, raw: dict[str, Array], name: str, logged: dict[st
     t = columns["t"]
     clock = str(rig.columns["time"].column) if "time" in rig.columns else "time"
     _refuse(path, ~np.isfinite(t), "is empty", clock)
-    kept = in_order(t)
-    if stray := len(t) - len(kept):
-        raw, columns = ({k: x[kept] for k, x in part.items()} for part in (raw, columns))
-        t = columns["t"]
     check_clock(path, t, clock)
     columns["t"] = t - t[0]
     for channel, where in rig.columns.items():  # a column that is late by delay_s tells of earlier times
@@ -96,9 +98,6 @@ def _run(path: Path, rig: Rig, raw: dict[str, Array], name: str, logged: dict[st
         columns["run"] = raw[str(rig.runs["column"])]
     start_s = _start(path, rig, float(t[0]))
     run = Run(name, path, name, columns, raw, {"rig": rig.name}, logged=counted, start_s=start_s)
-    if stray:
-        note = f"{stray} rows have a stamp that leaps back or ahead of its neighbours: left out"
-        run.repairs.append(Repair("leap", "time", stray, float(stray), note))
     run.period_s = float(np.median(np.diff(columns["t"]))) if run.rows > 1 else 1.0
     run.signals = {
         c: signal_of(c, str(w.column), w.unit, columns["t" if c == "time" else c], wraps.get(c, 0))

@@ -11,6 +11,7 @@ from calibration.balances.balance import problem_of
 from calibration.balances.floors import passed
 from calibration.balances.view import view_of
 from calibration.errors import CalibrationInputError
+from calibration.inputs.clock import in_order
 from calibration.inputs.logs import read_drive
 from calibration.inputs.rigfile import load_rig
 from calibration.inputs.run import Run, quantum, rows_per_reading, step_of
@@ -21,6 +22,7 @@ from calibration.names.lines import line, of_stage
 STEP_S = 0.01
 ROWS = 300
 T = STEP_S * np.arange(ROWS)
+T_LONG = STEP_S * np.arange(100_000)
 X = np.sin(T)
 U = np.cos(3.0 * T)
 COLUMNS = """  time: {column: t, unit: s}
@@ -78,9 +80,21 @@ def test_a_few_stamps_that_leap_cost_their_rows_alone(tmp_path: Path) -> None:
     assert run.columns["position"].tolist() == np.delete(X, stray).tolist()
     assert run.columns["t"] == pytest.approx(np.delete(T, stray) - T[1])
     assert [(r.kind, r.rows) for r in run.repairs if r.channel == "time"] == [("leap", 3)]
+    way = COLUMNS.replace("unit: rad}", "unit: rad/s, integrated: true}")
+    moved = read(tmp_path, rows(t, np.ones(ROWS), U), way).columns["position"]
+    assert np.ptp(moved) == pytest.approx(T[-1] - T[1])  # no stray stamp is a time in which it moved on
     t[10] = 60.0
     with pytest.raises(CalibrationInputError, match="time goes backwards from 1000 to"):
         read(tmp_path, rows(t, X, U))
+
+
+def test_a_clock_in_rows_of_another_order_is_seen_at_once() -> None:
+    """Ten interleaved stretches of a long table, and what one in a hundred allows."""
+    t = np.concatenate([T_LONG + k * 1e-5 for k in range(10)])
+    assert len(in_order(t)) == len(t)
+    t = T_LONG.copy()
+    t[50::100] -= 3.0
+    assert len(in_order(t)) == len(t) - len(t) // 100
 
 
 def test_a_word_that_is_no_stamp_names_its_line(tmp_path: Path) -> None:
