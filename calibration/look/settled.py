@@ -24,6 +24,9 @@ from calibration.statistics.regression import solve
 ABOVE = 2.0
 # of the rows one way, that go the other way at least, of a drive that goes both. ASSUMPTION
 BOTH_WAYS = 0.2
+FOLLOWS = (
+    0.5  # correlation of two sensors of one motion, at least. ASSUMPTION: late or loose, they still follow
+)
 LITTLE = 0.05  # of the effort's variation, for friction that is none. ASSUMPTION
 # amplitude behind a filter, below which a wave is not seen there. ASSUMPTION: as little as half is still seen
 HARDLY = 0.5
@@ -124,6 +127,19 @@ def doubts(view: View, told: Balance) -> list[str]:
     return out
 
 
+def _together(p: Problem) -> float:
+    """Correlation of a second sensor with the first, beside the files' own constants. It is 0 below FOLLOWS,
+    as where one column is the two sensors' difference."""
+    names = [name for name, _ in p.base_labels]
+    x = p.base[p.train]
+    others, first = np.delete(x, names.index("scale"), axis=1), x[:, names.index("scale")]
+    both = np.column_stack([p.y[p.train], first])
+    left = both - others @ solve(others, both)
+    size = float(np.prod(np.linalg.norm(left, axis=0)))
+    found = float(left[:, 0] @ left[:, 1]) / size if size > 0 else 0.0
+    return found if abs(found) > FOLLOWS else 0.0
+
+
 def turned(view: View, problem: Problem) -> list[str]:
     """Turn the response's sign, in place, where masses and friction together come out negative, or a second
     sensor falls as the first one rises.
@@ -131,7 +147,7 @@ def turned(view: View, problem: Problem) -> list[str]:
     The sign convention is then the other one; a note says so.
     """
     r, rows, x = view.response, problem.train, problem.base
-    if r.channel == "position2" and (r.ratio or problem.plain_fit(rows)[0].get("scale", 0.0)) < 0.0:
+    if r.channel == "position2" and (r.ratio or _together(problem)) < 0.0:
         view.response = replace(r, gain=-r.gain, ratio=None if r.ratio is None else -r.ratio)
         return [
             f"{r.channel}: falls as the position rises. Its sign, and that of what is found, is turned here"
