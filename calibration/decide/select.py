@@ -88,9 +88,14 @@ class _Search:
 
     def expect(self) -> None:
         """Accept what is expected by itself, before anything is searched for."""
-        for c in (c for name in EXPECTED for c in self.candidates if c.name == name):
+        for c in self._testable([c for name in EXPECTED for c in self.candidates if c.name == name]):
             found = self.accepted(self.picks, [c], tries=1, further=False)
             self.picks = self.picks.keep([*self.picks.chosen, *found])
+
+    def _testable(self, some: list[Candidate]) -> list[Candidate]:
+        """Those that the log has rows enough for."""
+        p = self.picks.problem
+        return [c for c in some if p.train.sum() >= limits.ROWS_PER_COLUMN * (p.base.shape[1] + c.width)]
 
     def pick(self, most: int) -> None:
         """Accept effects, strongest first, until none is acceptable or `most` are there."""
@@ -101,7 +106,7 @@ class _Search:
             why = f"{SHORT}: coloured noise needs {limits.FEWEST_BLOCKS} independent blocks ({seconds:.0f} s)"
             self.picks.refused.append(Refusal("every effect that no declared stage has", why))
             left = [c for c in left if c.stage]
-        left = [c for c in left if p.train.sum() >= limits.ROWS_PER_COLUMN * (p.base.shape[1] + c.width)]
+        left = self._testable(left)
         # where the log has too few rows for any, its power is told as if all had been looked at
         self.picks = replace(self.picks, looked_at=self.before + (len(left) or len(self.candidates)))
         while len(self.picks.chosen) < most and left:
