@@ -51,12 +51,9 @@ def _of(s: Scene, load: np.ndarray) -> Candidate:
 
 def lacks(s: Scene) -> str:
     """A load beside friction."""
-    loaded = s.view.dynamic and (s.weighed or "inertia" in s.declared)
-    return (
-        ""
-        if loaded or "applied" in s.declared
-        else "a load beside friction: accelerations, a weight, or what is applied"
-    )
+    if "applied" in s.declared or (s.view.dynamic and (s.weighed or "inertia" in s.declared)):
+        return ""
+    return "a load beside friction: accelerations, a weight, or what is applied"
 
 
 NAME = Name(name="load_friction", columns=columns, experiment="the same motion with two loads", lacks=lacks)
