@@ -14,7 +14,7 @@ def test_a_column_of_the_difference_keeps_its_sign(tmp_path: Path) -> None:
     """A torque winds a shaft up; of the first sensor's motion the difference has a little, the other way."""
     t, x, _ = motion()
     torque = 3.0 * np.sin(1.7 * t) + np.sin(4.1 * t)
-    second = 2e-3 * torque - 1e-3 * x + 1e-5 * np.random.default_rng(4).standard_normal(len(t))
+    second = 2e-3 * torque - 8e-3 * x + 1e-5 * np.random.default_rng(4).standard_normal(len(t))
     text = SENSORS.replace(", ratio: 0.02", "").replace(
         "response:", "  force: {column: f, unit: N m}\nresponse:"
     )
