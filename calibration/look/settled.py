@@ -134,7 +134,7 @@ def _together(p: Problem) -> float:
     x = p.base[p.train]
     others, first = np.delete(x, names.index("scale"), axis=1), x[:, names.index("scale")]
     both = np.column_stack([p.y[p.train], first])
-    left = both - others @ solve(others, both)
+    left = both - others @ np.linalg.lstsq(others, both, rcond=1e-8)[0]
     size = float(np.prod(np.linalg.norm(left, axis=0)))
     found = float(left[:, 0] @ left[:, 1]) / size if size > 0 else 0.0
     return found if abs(found) > FOLLOWS else 0.0
