@@ -1,6 +1,7 @@
 """A drive with a rig file: records, every response, the command, the volts."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ from calibration.balances.agreement import Agreement, velocity_against_position
 from calibration.balances.balance import problem_of
 from calibration.balances.problem import Problem
 from calibration.balances.thresholds import FEWEST_ROWS
-from calibration.balances.view import View, view_of
+from calibration.balances.view import WINDOW, View, view_of
 from calibration.balances.volts import has_volts
 from calibration.balances.width import NARROW
 from calibration.decide.thresholds import STILL_MISSING
@@ -44,12 +45,7 @@ def look_at_response(drive: Drive, rig: Rig, options: Options) -> Looked:
         view = view_of(records, rig, response)
         if not views:
             agreement = velocity_against_position(view, problem_of(view, records, options.hold_out).held)
-        balance = look_at_forces(view, records, options)
-        if balance.missing and not _explains(balance):
-            tell(f"{response.channel}: through a narrower filter")
-            finer = view_of(records, rig, response, NARROW)
-            if finer.wide < view.wide and _names(other := look_at_forces(finer, records, options)):
-                view, balance = finer, other
+        view, balance = _through_its_filter(view, records, options)
         balances.append(balance)
         views.append(view)
     held_out = list(_held_names(views[0], balances[0].selection.problem, records))
@@ -94,6 +90,24 @@ def look_at_response(drive: Drive, rig: Rig, options: Options) -> Looked:
         notes=[*start, *_gaps(records), *(note for kind, note in repairs if kind not in REMARKED)],
         remarks=[*(note for kind, note in repairs if kind in REMARKED), *strange, *scaled, *short],
     )
+
+
+def _through_its_filter(view: View, records: list[Run], options: Options) -> tuple[View, Balance]:
+    """The view's response. Where the usual filter shows nothing, as a narrower one does that shows a name."""
+    response = view.response  # as it is declared: its sign may be turned
+    balance = look_at_forces(view, records, options)
+    if not balance.missing or _explains(balance):
+        return view, balance
+    finer = view_of(records, view.rig, response, NARROW)
+    if finer.wide >= view.wide:
+        return view, balance
+    options.tell(f"{response.channel}: through a narrower filter")
+    other = look_at_forces(finer, records, options)
+    if not _names(other):
+        return view, balance
+    width = f"{WINDOW * view.wide * view.period_s:.3g} s"
+    note = f"{response.channel}: behind the usual filter of {width} nothing shows; a narrower one is taken"
+    return finer, replace(other, notes=[note, *other.notes])
 
 
 def _names(b: Balance) -> bool:

@@ -46,6 +46,7 @@ def test_a_narrower_filter_is_taken_where_it_alone_shows_a_name(
     options = Options(hold_out=[], out=tmp_path, plant=None, replay=False, tell=lambda _: None)
     found = response.look_at_response(read_drive([tmp_path / "d.csv"], rig), rig, options)
     assert found.balances[0].remarks == [taken]
+    assert any("a narrower one is taken" in x for x in found.balances[0].notes) == (taken == "finer")
     assert seen[1:] == [] if takes > 1.0 else seen[1] < seen[0]
 
 
