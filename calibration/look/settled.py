@@ -129,8 +129,10 @@ def doubts(view: View, told: Balance) -> list[str]:
 
 def _together(p: Problem) -> float:
     """Correlation of a second sensor with the first, beside the files' own constants. It is 0 below FOLLOWS,
-    as where one column is the two sensors' difference."""
+    as where one column is the two sensors' difference, and where no ratio is fitted."""
     names = [name for name, _ in p.base_labels]
+    if "scale" not in names:
+        return 0.0
     x = p.base[p.train]
     others, first = np.delete(x, names.index("scale"), axis=1), x[:, names.index("scale")]
     both = np.column_stack([p.y[p.train], first])
