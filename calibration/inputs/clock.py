@@ -18,13 +18,13 @@ STRAY = 0.01
 def parts_of_clock(raw: dict[str, Array], t: Array) -> list[tuple[dict[str, Array], int]]:
     """A table by its clock `t` (n,), each part with the number of its rows that were left out.
 
-    It is one, without stray rows; or has parts where the clock starts again from its first stamp.
+    Stray rows are left out. Without any it has parts where the clock starts again from its first stamp.
     """
-    back = np.flatnonzero(np.diff(t) < 0) + 1
     kept = in_order(t)
-    if not len(back) or len(kept) < len(t):
+    if len(kept) < len(t):
         return [({name: x[kept] for name, x in raw.items()}, len(t) - len(kept))]
-    if np.any(np.abs(t[back] - t[0]) > FROM_THE_FIRST * np.median(np.abs(np.diff(t)))):
+    back = np.flatnonzero(np.diff(t) < 0) + 1
+    if not len(back) or np.any(np.abs(t[back] - t[0]) > FROM_THE_FIRST * np.median(np.abs(np.diff(t)))):
         return [(raw, 0)]
     edges = itertools.pairwise([0, *back, len(t)])
     return [({name: x[a:b] for name, x in raw.items()}, 0) for a, b in edges]

@@ -24,9 +24,8 @@ from calibration.statistics.regression import solve
 ABOVE = 2.0
 # of the rows one way, that go the other way at least, of a drive that goes both. ASSUMPTION
 BOTH_WAYS = 0.2
-FOLLOWS = (
-    0.5  # correlation of two sensors of one motion, at least. ASSUMPTION: late or loose, they still follow
-)
+# correlation of two sensors of one motion, at least. ASSUMPTION: late or loose, they still follow
+FOLLOWS = 0.5
 LITTLE = 0.05  # of the effort's variation, for friction that is none. ASSUMPTION
 # amplitude behind a filter, below which a wave is not seen there. ASSUMPTION: as little as half is still seen
 HARDLY = 0.5
@@ -128,8 +127,10 @@ def doubts(view: View, told: Balance) -> list[str]:
 
 
 def _together(p: Problem) -> float:
-    """Correlation of a second sensor with the first, beside the files' own constants. It is 0 below FOLLOWS,
-    as where one column is the two sensors' difference, and where no ratio is fitted."""
+    """Correlation of a second sensor with the first, beside the files' own constants.
+
+    It is 0 below FOLLOWS, as of a column that is the two sensors' difference, and where no ratio is fitted.
+    """
     names = [name for name, _ in p.base_labels]
     if "scale" not in names:
         return 0.0
