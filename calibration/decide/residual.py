@@ -14,7 +14,7 @@ from calibration.balances.view import View
 from calibration.decide import thresholds as limits
 from calibration.decide.parameters import finding_of
 from calibration.decide.rules import clear, displaced, larger_than_the_response, leave_out
-from calibration.decide.select import select
+from calibration.decide.select import EXPECTED, select
 from calibration.decide.selection import Selection
 from calibration.finding import UNKNOWN, Finding, Parameter
 from calibration.names import NAMES
@@ -157,24 +157,30 @@ def domain_share(e: Array, x: Array, train: Mask, test: Mask) -> float:
 
 
 def settle(findings: list[Finding], left: Left | None, channel: str) -> list[Finding]:
-    """Findings without names that leave most of the log above its floor; what has no name is `unknown`."""
+    """Findings without names that leave most of the log above its floor; what has no name is `unknown`.
+
+    Friction that nobody stated is there in every drive, and keeps its name.
+    """
     if left is None:
         return findings
+    expected = [f for f in findings if f.name in EXPECTED]
+    findings = [f for f in findings if f.name not in EXPECTED]
     named = [f for f in findings if f.name != UNKNOWN]
     size = f"{left.times:.1f} floors are left {left.where}"
     if not findings:
-        return [_unknown(left.domain, channel, left, size)] if left.domain else []
+        much = not expected or left.part > MOST_LEFT
+        return [*expected, *([_unknown(left.domain, channel, left, size)] if left.domain and much else [])]
     if not named or left.part <= MOST_LEFT:
-        return findings
+        return expected + findings
     first = max(named, key=lambda f: f.share)
     names = list(dict.fromkeys(f.name for f in named))
     taken = f"{100 * (1 - left.part):.0f} % of what is above the floor"
     note = f"{', '.join(names)} would take {taken} only: {size}"
     shapes = [f for f in findings if f.name == UNKNOWN]
     if shapes:  # a function that stays says more than names that do not
-        return [shapes[0].noted(note), *shapes[1:]]
+        return [*expected, shapes[0].noted(note), *shapes[1:]]
     theirs = left.domain if left.part * left.share > first.share else None  # of the whole
-    return [replace(_unknown(theirs or first.domain, channel, left, note), equivalent=names)]
+    return [*expected, replace(_unknown(theirs or first.domain, channel, left, note), equivalent=names)]
 
 
 def of_one_domain(findings: list[Finding], left: Left | None) -> list[Finding]:

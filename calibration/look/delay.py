@@ -10,7 +10,7 @@ from calibration.balances.view import View
 from calibration.decide.residual import MOST_LEFT, part_left
 from calibration.decide.rules import dominant
 from calibration.decide.selection import Selection
-from calibration.decide.thresholds import CLEAR_SHARE, REMAINDER
+from calibration.decide.thresholds import CLEAR_SHARE, PLAINLY, REMAINDER
 from calibration.finding import Finding
 from calibration.look.search import lines_over_place, scene_of
 from calibration.names.lateness import effort_delay, is_hold
@@ -70,7 +70,7 @@ def timed(view: View, made: Make, problem: Problem, channel: str, find: Find) ->
         why = "the declared model is at the floor without it"
     elif floor and part_left(before, now, floor) > MOST_LEFT:
         why = "it leaves most of what is above the floor"
-    elif any(x.startswith("inertia:") for x in late[2]) and found[2] == []:
+    elif _no_inertia(late, found) and was**2 - now**2 < PLAINLY * was**2:
         why = "beside it the drive has no inertia: along a sine either is the other"
     if why:
         what = f"channel_delay of {channel}, {1e3 * delay.parameters['delay'].value:.2g} ms, was close"
@@ -81,6 +81,11 @@ def timed(view: View, made: Make, problem: Problem, channel: str, find: Find) ->
             delay = replace(delay, share=max(1 - (alone / before) ** 2, 0.0))
         return Timed(moved, late, delay, declared)
     return Timed(plain_loop, found)
+
+
+def _no_inertia(late: Found, found: Found) -> bool:
+    """Whether the inertia comes out negative beside the delay alone."""
+    return not found[2] and any(x.startswith("inertia:") for x in late[2])
 
 
 def left_by_the_declared(view: View, p: Problem) -> float:

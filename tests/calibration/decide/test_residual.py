@@ -342,3 +342,16 @@ def test_a_quick_line_of_the_column_is_an_unknown_of_time(monkeypatch: pytest.Mo
     assert quick_lines(still, "T") == []  # type: ignore[arg-type]
     monkeypatch.setattr(residual, "pick_up", lambda view, top: None)
     assert quick_lines(moving, "T") == []  # type: ignore[arg-type]
+
+
+def test_friction_that_nobody_stated_keeps_its_name_beside_much_that_is_left() -> None:
+    friction = named("coulomb_change", 0.1, "velocity")
+    left = Left(4.0, 0.75, "time", "over time", 0.5)
+    kept, rest = settle([friction], left, "T")
+    assert kept == friction and (rest.name, rest.domain, rest.equivalent) == (UNKNOWN, "time", ())
+    assert settle([friction], replace(left, part=MOST_LEFT), "T") == [friction]
+    assert settle([friction], replace(left, domain=None), "T") == [friction]
+    kept, rest = settle([friction, named(share=0.9)], left, "T")
+    assert kept == friction and (rest.name, rest.equivalent) == (UNKNOWN, ["brake_drag"])
+    shape = Finding(UNKNOWN, "T", "velocity", share=0.1)
+    assert settle([shape, friction], left, "T") == [friction, shape]

@@ -45,3 +45,12 @@ def test_an_effect_that_names_the_stretch_is_no_event(tmp_path: Path) -> None:
     data = answer(tmp_path, SENSORS, (t, x, y + 2e-3 * (t > 2.0)), (t, x, y))
     assert [e["name"] for e in data["effects"]] == ["roller_slip"]
     assert "left out" not in str(data)
+
+
+def test_a_push_in_each_of_two_files_is_told_of_both(tmp_path: Path) -> None:
+    files = [pushed(4.0), pushed(17.0), pushed(), pushed()]
+    data = answer(tmp_path, FORCE, *files)
+    (found,) = [e for e in data["effects"] if e["domain"] == "time"]
+    assert "s of file 1, " in found["note"] and "s of file 2 only" in found["note"]
+    assert data["calibrated"]["inertia"]["value"] == pytest.approx(MASS, rel=0.02)
+    assert data["calibrated"]["coulomb"]["value"] == pytest.approx(COULOMB, rel=0.05)

@@ -1,0 +1,25 @@
+"""An effort that is late along one sine: its friction tells the time, though inertia is not to be had."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.calibration.test_drives import COULOMB, FORCE, PERIOD, answer
+
+HZ, LATE_S = 1.0, 0.04
+
+
+def test_a_late_effort_along_one_sine_is_found_by_its_friction(tmp_path: Path) -> None:
+    """A light arm, whose inertia is a hundredth of what the late friction looks like."""
+    t = np.arange(0, 30.0, PERIOD)
+    files = []
+    for k, size in enumerate((0.1, 0.2, 0.4)):
+        x, ahead = (size * np.sin(2 * np.pi * HZ * (t + s)) for s in (0.0, LATE_S))
+        speed = size * 2 * np.pi * HZ * np.cos(2 * np.pi * HZ * (t + LATE_S))
+        noise = 0.02 * np.random.default_rng(k).standard_normal(len(t))
+        files.append((t, x, -0.001 * ahead + COULOMB * np.sign(speed) + noise))
+    data = answer(tmp_path, FORCE, *files)
+    assert [e["name"] for e in data["effects"]] == ["channel_delay"]
+    delay = data["effects"][0]["parameters"]["delay"]["value"]
+    assert abs(delay) == pytest.approx(LATE_S, rel=0.05)
