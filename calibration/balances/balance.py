@@ -1,6 +1,7 @@
 """The regression of a drive's response: a balance of forces, or one sensor against another."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,19 +37,27 @@ TOLD_BY = ("gravity", "applied")
 
 
 def problem_of(view: View, records: list[Run], hold_out: list[str], delay_s: float = 0.0) -> Problem:
-    """The response and its declared terms on the fitted rows; the response's column is late by `delay_s`."""
+    """The response and its declared terms on the fitted rows; the force's column is late by `delay_s`."""
     rig, response, at = view.rig, view.response, view.rows
+    driven = "applied" in view.columns
+    if driven and response.channel == "acceleration":
+        view = replace(
+            view, columns={**view.columns, "applied": view.delayed(view.columns["applied"], delay_s)}
+        )
     y, ok = response_of(view, delay_s)
     terms = _terms(view)
     for name, value in rig.constants.items():
         y = y - value * term_of(view, name)[0][2]
     valid = (view.ok & ok)[at]
-    if view.dynamic and response.channel != "acceleration":
+    if view.dynamic and (driven or response.channel != "acceleration"):
         valid &= view.at((np.abs(view.speed) < view.slow).astype(float)) < STANDS
     if not view.dynamic and response.is_force:
         valid &= np.abs(view.direction[at]) > 0
     shown = [np.abs(view.speed), *(x for name, _, x in terms if name.startswith(TOLD_BY))]
-    held = _held(view, records, hold_out, valid, [x[at] for x in shown])
+    quick = [
+        np.abs(view.at(x)) for name, _, x in terms if name == "inertia"
+    ]  # behind the filter: it is noisy
+    held = _held(view, records, hold_out, valid, [*(x[at] for x in shown), *quick])
     period, session = view.period_s * view.step, view.file[at]
     problem = Problem(
         channel="T" if response.is_force else "K",
@@ -83,7 +92,7 @@ def response_of(view: View, delay_s: float) -> tuple[Array, Mask]:
     r, ok = view.response, np.ones(len(view.t), dtype=bool)
     if r.channel == "acceleration":
         x = view.columns.get("acceleration")
-        y = view.second(view.x) if x is None else x
+        y = -(view.second(view.x) if x is None else x)  # what forces per unit of inertia overcome
     else:
         y = view.delayed(view.columns[r.channel], delay_s)
     y = y * r.gain
@@ -127,9 +136,9 @@ def term_of(view: View, name: str) -> list[Term]:
     if name == "gravity":
         return _gravity(view)
     files = np.unique(view.file)
+    drives = -1.0 if view.response.channel == "acceleration" else 1.0
     if name == PER_FILE or (name == "offset" and len(files) > 1 and _own_offsets(view)):
         return [(f"offset_{int(k) + 1}", unit, (view.file == k).astype(float)) for k in files]
-    brakes = -1.0 if view.response.channel == "acceleration" else 1.0
     known: dict[str, tuple[str, Callable[[], Array]]] = {
         "inertia": (
             f"{unit} s2/{x}",
@@ -138,11 +147,11 @@ def term_of(view: View, name: str) -> list[Term]:
         # a rate that no filter follows is as noisy as the sensor's steps, which would hide its coefficient
         "viscous": (
             f"{unit} s/{x}",
-            lambda: (view.smoothed(view.rate(view.x)) if view.dynamic else view.speed) * brakes,
+            lambda: view.smoothed(view.rate(view.x)) if view.dynamic else view.speed,
         ),
-        "coulomb": (unit, lambda: sliding_of(view).shape * brakes),
+        "coulomb": (unit, lambda: sliding_of(view).shape),
         "offset": (unit, lambda: np.ones(len(view.t))),
-        "applied": (f"{unit}/{_unit_of(view, name)}", lambda: view.columns[name]),
+        "applied": (f"{unit}/{_unit_of(view, name)}", lambda: drives * view.columns[name]),
         "drift": (f"{unit}/s", lambda: view.clock - view.clock.mean()),
         "stiffness": (f"{unit}/{x}", lambda: view.x - view.x.mean()),
         "scale": (f"{unit}/{x}", lambda: view.x - view.x.mean()),

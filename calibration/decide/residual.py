@@ -13,8 +13,8 @@ from calibration.balances.pickup import TOP, pick_up
 from calibration.balances.view import View
 from calibration.decide import thresholds as limits
 from calibration.decide.parameters import finding_of
-from calibration.decide.rules import clear, displaced, larger_than_the_response, leave_out
-from calibration.decide.select import EXPECTED, select
+from calibration.decide.rules import EXPECTED, clear, displaced, larger_than_the_response, leave_out
+from calibration.decide.select import select
 from calibration.decide.selection import Selection
 from calibration.finding import UNKNOWN, Finding, Parameter
 from calibration.names import NAMES

@@ -29,6 +29,8 @@ Rule = Callable[[Selection], tuple[int, str] | None]
 
 #: declared terms that are positive in every drive: a fit with a negative one feeds energy
 POSITIVE = ("inertia", "viscous", "coulomb", "resistance", "torque_constant")
+#: friction that every drive has: where nobody stated it, it comes before what might stand in for it
+EXPECTED = ("coulomb_change", "viscous_change")
 #: domains that a column of the log tells which is neither the motion nor the clock
 OTHER_COLUMNS = ("current", "temperature")
 
@@ -188,15 +190,17 @@ def worth_little(s: Selection) -> tuple[int, str] | None:
 def remainder(s: Selection) -> tuple[int, str] | None:
     """An effect worth a few per cent of all: an imperfect model of the strongest one leaves as much.
 
-    Not one that follows another column of the log, and takes much of what is left without it.
+    Not one that follows another column of the log, and takes much of what is left above the floor without it.
     """
     strongest = dominant(s)
     if not strongest:
         return None
     taken = s.held.taken
     each_worth = [_left(x) - _left(s) for x in _each_left_out(s)]
+    least = s.problem.floor**2
     told = [
-        c.name == strongest or (c.domain in OTHER_COLUMNS and x > limits.PLAINLY * (x + _left(s)))
+        c.name == strongest
+        or (c.domain in OTHER_COLUMNS and x + _left(s) > max(least, _left(s) / (1 - limits.PLAINLY)))
         for c, x in zip(s.candidates, each_worth, strict=True)
     ]
     worth = np.where(told, np.inf, each_worth)
@@ -207,12 +211,11 @@ def remainder(s: Selection) -> tuple[int, str] | None:
 
 
 def dominant(s: Selection) -> str:
-    """The name whose effects alone take off nearly all that all of them do, or empty."""
+    """The name, expected friction first, whose effects alone take off nearly all that all do; or empty."""
     names = {c.name for c in s.candidates}
     alone = {n: _left(s.keep([x for x in s.chosen if x.candidate.name == n])) for n in names}
-    name = min(alone, key=lambda n: alone[n], default="")
-    taken = s.held.taken
-    return name if name and s.held.before**2 - alone[name] >= limits.DOMINANT * taken > 0 else ""
+    nearly = [n for n in alone if s.held.before**2 - alone[n] >= limits.DOMINANT * s.held.taken > 0]
+    return min(nearly, key=lambda n: (n not in EXPECTED, alone[n]), default="")
 
 
 def displaced(smooth: Contender) -> Rule:

@@ -16,9 +16,6 @@ from calibration.decide.selection import NO_SCORES, Refusal, Selection
 from calibration.statistics.regression import under
 from calibration.statistics.surrogate import Scores, basis, orthonormal_blocks, score, together
 
-# friction that every drive has: where nobody stated it, it comes before what might stand in for it
-EXPECTED = ("coulomb_change", "viscous_change")
-
 
 def select(
     problem: Problem,
@@ -88,7 +85,7 @@ class _Search:
 
     def expect(self) -> None:
         """Accept what is expected by itself, before anything is searched for."""
-        for c in self._testable([c for name in EXPECTED for c in self.candidates if c.name == name]):
+        for c in self._testable([c for name in rules.EXPECTED for c in self.candidates if c.name == name]):
             found = self.accepted(self.picks, [c], tries=1, further=False)
             self.picks = self.picks.keep([*self.picks.chosen, *found])
 
@@ -122,7 +119,7 @@ class _Search:
         replaced = False
         for k in range(len(self.picks.chosen)):
             first, *later = self.picks.candidates[k:]
-            if first.name in EXPECTED:
+            if first.name in rules.EXPECTED:
                 continue
             shares = (_shared(self.picks.problem, first, c) for c in later)
             if replaced or any(share > limits.APART for share in shares):

@@ -11,7 +11,7 @@ from calibration.inputs.units import is_rate
 from plant.effects import REGISTRY
 
 #: channels whose response is a balance of forces; the others compare one sensor with another
-FORCES = ("effort", "force", "current", "acceleration", "velocity")
+FORCES = ("effort", "force", "current", "applied", "acceleration", "velocity")
 JOINTS = ("joint", "joint2", "joint3")  # channels of other joints' angles, which a weight is carried over
 _UNIT = re.compile(r"_(Nms?(_per_\w+)?|rad_per_s|ohm|kgm2)$")  # the SI unit at the end of a key
 T = TypeVar("T")

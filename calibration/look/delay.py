@@ -12,6 +12,7 @@ from calibration.decide.rules import dominant
 from calibration.decide.selection import Selection
 from calibration.decide.thresholds import CLEAR_SHARE, PLAINLY, REMAINDER
 from calibration.finding import Finding
+from calibration.inputs.declaration import Response
 from calibration.look.search import lines_over_place, scene_of
 from calibration.names.lateness import effort_delay, is_hold
 from calibration.names.scene import Scene
@@ -43,17 +44,22 @@ class Timed:
 
 def timed(view: View, made: Make, problem: Problem, channel: str, find: Find) -> Timed:
     """A delay, only where names without it do not explain as much; `made`: the balance by its delay, s."""
-    scene = scene_of(view, problem.once)
+    scene = _scene_of_the_force(view, problem.once, channel)
     delay, close = effort_delay(scene, lines_over_place(scene))
+    hold = None
     if delay is not None and is_hold(delay, view.period_s):
-        value = delay.parameters["delay"].value
+        value, delay = delay.parameters["delay"].value, None
         held = made(value)
         note = f"{channel}: acts {-value:.2g} s after its row: the hold of a sampled loop"
-        return Timed(held, find(held), note=note)
+        hold = Timed(held, find(held), note=note)
+        if left_by_the_declared(view, held) < left_by_the_declared(view, problem):
+            return hold
     # no log tells which row an effort that is held for a period was written to: whichever fits best
     half = view.period_s / 2
     plain_loop = min((problem, made(-half), made(half)), key=lambda p: left_by_the_declared(view, p))
     found = find(plain_loop)
+    if hold is not None and hold.found[0].held.after < found[0].held.after:
+        return hold
     if delay is None:
         return Timed(plain_loop, found, close=close)
     moved = made(delay.parameters["delay"].value)
@@ -81,6 +87,17 @@ def timed(view: View, made: Make, problem: Problem, channel: str, find: Find) ->
             delay = replace(delay, share=max(1 - (alone / before) ** 2, 0.0))
         return Timed(moved, late, delay, declared)
     return Timed(plain_loop, found)
+
+
+def _scene_of_the_force(view: View, p: Problem, channel: str) -> Scene:
+    """Where a force is the response, which alone may be late: turned round, if it is what is applied."""
+    if view.response.channel == channel:
+        return scene_of(view, p)
+    k = p.place(channel)
+    base = p.base.copy()
+    base[:, k] = -p.y
+    seen = replace(view, response=Response(channel, view.rig.columns[channel].unit))
+    return scene_of(seen, replace(p, y=-p.base[:, k], base=base))
 
 
 def _no_inertia(late: Found, found: Found) -> bool:

@@ -25,12 +25,13 @@ from calibration.finding import UNKNOWN, Finding, Parameter
 from calibration.inputs.run import Run
 from calibration.look.delay import Found, Make, Timed, timed
 from calibration.look.event import leave_out_event
+from calibration.look.fewvalues import MOVES, few_values
 from calibration.look.gap import crossed_first, where_known
 from calibration.look.looked import Balance, Options, Spectrum, calibrated
 from calibration.look.loopslaw import follows, law_of_its_loop
 from calibration.look.said import close, filtered, lacking_names, moves_with, place_of, wound_up
 from calibration.look.search import find, scene_of
-from calibration.look.settled import doubts, few_values, one_filter, sharpest, turned
+from calibration.look.settled import doubts, one_filter, sharpest, turned
 from calibration.look.slips import slipped
 
 SWAYS = 6  # waves that a zero may make within a file: along more moves it follows none. ASSUMPTION
@@ -48,13 +49,12 @@ def look_at_forces(view: View, records: list[Run], options: Options) -> Balance:
     if view.dynamic:
         one_filter(view, made)
         fade(view, sharpest(view, made))
+    few, motion = few_values(view, records, made)
     problem = made()
-    if few := few_values(records, view, problem) or law_of_its_loop(
-        view, problem, floor_of(view, problem)[0]
-    ):
+    if few := few or law_of_its_loop(view, problem, floor_of(view, problem)[0]):
         bare = Selection.of(problem)
         return Balance(key=problem.channel, row=ROWS[problem.channel], selection=bare, needs=[few])
-    notes = turned(view, problem)
+    notes = [*filter(None, [motion]), *turned(view, problem)]
     when, remarks = _found(view, made)
     event = leave_out_event(view, made, when.found[0]) if view.response.is_force else None
     if event is not None:
@@ -85,9 +85,10 @@ def _found(view: View, made: Make) -> tuple[Timed, list[str]]:
         whole = made(0.0)
         if not response.is_force:
             return slipped(whole, crossed_first(search(whole), view, search), view, search)
-        if response.channel not in ("effort", "current", "force") or not view.dynamic:
+        moves = "applied" if response.channel == "acceleration" else response.channel
+        if moves not in (*MOVES, "applied") or moves not in view.columns or not view.dynamic:
             return Timed(whole, search(whole))
-        return timed(view, made, whole, response.channel, search)
+        return timed(view, made, whole, moves, search)
 
     if response.is_force and not response.is_speed:
         problem = made(0.0)

@@ -94,11 +94,11 @@ def look_at_response(drive: Drive, rig: Rig, options: Options) -> Looked:
 
 def _through_its_filter(view: View, records: list[Run], options: Options) -> tuple[View, Balance]:
     """The view's response. Where the usual filter shows nothing, as a narrower one does that shows a name."""
-    response = view.response  # as it is declared: its sign may be turned
+    rig, response = view.rig, view.response  # as they are declared: its sign may be turned
     balance = look_at_forces(view, records, options)
     if not balance.missing or _explains(balance):
         return view, balance
-    finer = view_of(records, view.rig, response, NARROW)
+    finer = view_of(records, rig, response, NARROW)
     if finer.wide >= view.wide:
         return view, balance
     options.tell(f"{response.channel}: through a narrower filter")

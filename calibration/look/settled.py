@@ -13,7 +13,6 @@ from calibration.balances.problem import Problem
 from calibration.balances.view import STANDSTILLS, View, choose_rows, fade
 from calibration.balances.width import NYQUIST
 from calibration.decide.heldout import cross_validate
-from calibration.inputs.run import Run, numbers
 from calibration.look.delay import Make, Timed, left_by_the_declared
 from calibration.look.looked import Balance
 from calibration.names.unknown import KNOTS
@@ -86,19 +85,6 @@ def sharpest(view: View, made: Make, known: Timed | None = None) -> float:
         left.append(left_by_the_declared(view, p))
     view.standstill, view.direction = shown
     return STANDSTILLS[int(np.argmin(left))]
-
-
-def few_values(records: list[Run], view: View, p: Problem) -> str:
-    """Why a response of fewer values than the model has terms (a torque's steps) tests nothing, or empty."""
-    channel, terms = view.response.channel, p.base.shape[1]
-    logged = numbers(records, channel)
-    values = len(np.unique(logged if len(logged) else p.y))
-    if values > terms:
-        return ""
-    return (
-        f"{channel} holds {values} values, the model has {terms} terms: it tests no balance; as response"
-        " take a measured force, or `acceleration` with it as `applied`"
-    )
 
 
 def _no_sign(y: Array) -> bool:

@@ -5,12 +5,14 @@ import numpy as np
 from calibration.balances.balance import term_of
 from calibration.balances.slowoffset import SLOW
 from calibration.names.name import Candidate, Name, Scene, candidate
+from calibration.names.scene import VARIES
 from calibration.names.unknown_alone import SETTLED
 from calibration.statistics.regression import solve
 
 MOST = 0.5  # part of the force that rubs, at most. ASSUMPTION: the plant's bound, five times its default
 #: terms that are no load: what the amplifier's zero does
 ZERO = ("drift", SLOW)
+APPLIED = "applied"
 #: terms that the motor carries, and the load does not
 FRICTION = ("coulomb", "viscous")
 
@@ -26,23 +28,36 @@ def columns(s: Scene) -> list[Candidate]:
         return [_of(s, np.interp(np.arange(len(s.view.t)), s.view.rows, load))]
     if lacks(s) or not s.both:
         return []
-    p, carried = s.problem, _settled(s, ZERO + FRICTION, False)
+    p, (carried, some) = s.problem, _settled(s, ZERO + FRICTION, False)
     x = np.hstack([p.base, carried.columns])[p.train]
-    return [_settled(s, ZERO, True), carried] if solve(x, p.y[p.train])[-1] > 0 else []
+    if solve(x, p.y[p.train])[-1] <= 0:
+        return []
+    # of one size the load has Coulomb's friction
+    return [c for c, varies in (_settled(s, ZERO, True), (carried, some)) if varies]
 
 
-def _settled(s: Scene, without: tuple[str, ...], itself: bool) -> Candidate:
-    """Friction in proportion to the force that the terms make, but some; with itself or without."""
+def _settled(s: Scene, without: tuple[str, ...], itself: bool) -> tuple[Candidate, bool]:
+    """Friction in proportion to the force that the terms make, but some; with itself or without.
+
+    And whether that force varies in size.
+    """
     p, found = s.problem, np.zeros((len(s.problem.y), 1))
     constants = [(n, x) for n, x in s.view.rig.constants.items() if n not in without]
     known = sum((x * s.at(term_of(s.view, n)[0][2]) for n, x in constants), np.zeros(1))
     carried = np.array([n not in without for n, _ in p.base_labels] + [itself])
+    # what is applied may switch its sign, and then its size behind a filter is another one
+    sharp = np.array([n == APPLIED for n, _ in p.base_labels] + [False])
+    full = term_of(s.view, APPLIED)[0][2] if sharp.any() else 0.0
     for _ in range(SETTLED):
         x = np.hstack([p.base, found])
-        force = x[:, carried] @ solve(x[p.train], p.y[p.train])[carried] + known
-        one = _of(s, np.interp(np.arange(len(s.view.t)), s.view.rows, np.abs(force)))
+        beta = solve(x[p.train], p.y[p.train])
+        smooth = x[:, carried & ~sharp] @ beta[carried & ~sharp] + known
+        load = np.abs(
+            np.interp(np.arange(len(s.view.t)), s.view.rows, smooth) + float(beta[sharp].sum()) * full
+        )
+        one = _of(s, load)
         found = one.columns
-    return one
+    return one, bool(np.std(load[s.view.ok]) > VARIES * np.mean(load[s.view.ok]))
 
 
 def _of(s: Scene, load: np.ndarray) -> Candidate:

@@ -18,7 +18,7 @@ from calibration.names.pair import Pair
 from calibration.statistics.regression import solve
 
 FEWEST = 0.005  # share of the rows that must lie within a gap, a loop or a dip. ASSUMPTION
-# of the mean speed, its standard deviation: below, what grows with the speed is the constant one. ASSUMPTION
+# of a mean speed or load, its standard deviation: below, what grows with it is the constant one. ASSUMPTION
 VARIES = 0.1
 LEAST_K = 0.5  # of temperature, before a coefficient of it means anything. ASSUMPTION
 # share of the rows in either direction: fewer say nothing of a difference between the two. ASSUMPTION

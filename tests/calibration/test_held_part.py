@@ -47,6 +47,21 @@ def test_what_is_held_out_is_told(tmp_path: Path, reverse: bool) -> None:
     assert begin == pytest.approx(36.0, abs=1.0) if reverse else begin < 24.0
 
 
+def test_a_sweep_is_judged_where_the_rest_accelerates_as_much(tmp_path: Path) -> None:
+    """Of one size at every frequency; a friction that nobody declared is then no drag from some time on."""
+    t = np.arange(0, 40.0, PERIOD)
+    phase = 2 * np.pi * (0.2 * t + 0.5 * (3.0 - 0.2) / t[-1] * t**2)
+    rate = 2 * np.pi * (0.2 + (3.0 - 0.2) / t[-1] * t)
+    size = 0.3 * np.minimum(1.0, 1.2 / rate)  # the speed is bounded, the acceleration is not
+    x = size * np.sin(phase)
+    v = np.gradient(x, t)
+    u = MASS * np.gradient(v, t) + VISCOUS * v + COULOMB * np.sign(v)
+    u += 0.02 * np.random.default_rng(1).standard_normal(len(t))
+    data = answer(tmp_path, FORCE.replace(" coulomb,", ""), (t, x, u))
+    assert " to " in data["held_out"][0]
+    assert [e["name"] for e in data["effects"]] == ["coulomb_change"]
+
+
 def test_what_is_applied_is_a_load_without_accelerations(tmp_path: Path) -> None:
     """A cylinder under pressure: its friction grows with it, in a rig file that declares no mass."""
     t, x, f, _ = loaded([1.0, 5.0, 3.0, 9.0, 7.0, 2.0])

@@ -35,7 +35,7 @@ class Told:
     names: Sequence[str]
     left: dict[str, float]
     before: float = 100.0
-    problem: Any = None
+    problem: Any = field(default_factory=lambda: SimpleNamespace(floor=0.0))
     bare: Any = field(default_factory=lambda: SimpleNamespace(residual=np.zeros(4)))
 
     @property
@@ -109,6 +109,13 @@ def test_a_remainder_is_three_hundredths_of_all(names: list[str], left: dict[str
         assert f"worth {part:.1f} % of what is found: a remainder of brake_drag" in remainder(s)[1]  # type: ignore
 
 
+@pytest.mark.parametrize(("floor", "gone"), [(2.0, None), (2.1, 1)])
+def test_a_column_tells_nothing_below_the_floor(floor: float, gone: int | None) -> None:
+    left = {"bs": 3.0, "b": 4.2, "s": 99.0}
+    s = Told(["brake_drag", "supply_sag"], left, problem=SimpleNamespace(floor=floor))
+    assert asked(remainder, s) == gone
+
+
 def test_a_name_that_harms_is_worth_nothing_of_all() -> None:
     s = Told(["brake_drag", "load_friction"], {"bl": 10.0, "b": 9.0, "l": 99.0})
     assert (remainder(s) or (0, ""))[1].startswith("worth 0.0 %")  # type: ignore[arg-type]
@@ -121,6 +128,10 @@ def test_the_strongest_takes_nineteen_twentieths_alone(alone: float, name: str) 
     small = Told(["brake_drag", "play"], {"bp": 0.1, "b": 0.101, "p": 0.4}, before=0.5)
     assert dominant(small) == "brake_drag"  # type: ignore[arg-type]
     assert dominant(Told([], {"": 100.0})) == ""  # type: ignore[arg-type]
+    # friction that every drive has comes before what begins with the log and leaves a little less
+    for friction, first in ((11.0, "coulomb_change"), (40.0, "brake_drag")):
+        both = Told(["brake_drag", "coulomb_change"], {"bc": 9.0, "b": 10.0, "c": friction})
+        assert dominant(both) == first  # type: ignore[arg-type]
     twice = Told(["brake_drag", "play", "brake_drag"], {"bbp": 10.0, "bb": alone, "p": 90.0})
     assert dominant(twice) == name  # type: ignore[arg-type]
 
