@@ -20,6 +20,7 @@ from calibration.decide.scan import Contender, fit_with
 from calibration.decide.selection import Selection
 from calibration.finding import UNKNOWN
 from calibration.names import NAMES
+from calibration.names.friction_asymmetry import COULOMB
 from calibration.names.structural_mode import rings
 from calibration.statistics.regression import under
 from calibration.statistics.tails import rms
@@ -352,8 +353,13 @@ def _turned(s: Selection) -> str:
         surely = x.value < -SURE_Z * x.error < 0 and was[name].value > -SURE_Z * was[name].error
         if name in POSITIVE and (was[name].value > 0 > x.value or surely):
             return name
-        if name == "coulomb" and x.value > 0:
-            pairs = (b for c, b in s.fitted if NAMES[c.name].waves_of_friction and c.width == 2)
-            if max((float(np.hypot(*b)) for b in pairs), default=0.0) > x.value + SURE_Z * x.error:
-                return "friction at some places"
+        if name != "coulomb":
+            continue
+        most = max(x.value, 0.0) + SURE_Z * x.error
+        pairs = (b for c, b in s.fitted if NAMES[c.name].waves_of_friction and c.width == 2)
+        if x.value > 0 and max((float(np.hypot(*b)) for b in pairs), default=0.0) > most:
+            return "friction at some places"
+        told = ((label, abs(b)) for c, sizes in s.fitted for label, b in zip(c.labels, sizes, strict=False))
+        if any(label == (COULOMB, s.problem.unit) and b > most for label, b in told):
+            return "friction one way"
     return ""

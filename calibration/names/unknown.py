@@ -28,6 +28,8 @@ APART = 3.0  # times 1 / time that lies between them. ASSUMPTION
 FEWEST_CYCLES = 4  # cycles of such a line within the log, at least. ASSUMPTION
 MOST_CYCLES = 2e5  # cycles likewise, at most, for its memory. ASSUMPTION
 HARMONICS = 5  # harmonics of such a line. ASSUMPTION
+#: of a function of the response, as the model has it
+OWN_FORCE = "of the force that the model makes: its gain is not one number, as of an amplifier or a magnet"
 
 
 def domains(s: Scene) -> list[tuple[str, Array]]:
@@ -68,7 +70,8 @@ def smooth_functions(s: Scene) -> list[Candidate]:
             forms.append(columns * s.view.direction[s.view.rows][:, None])
         if s.force and s.view.dynamic and domain == "axis_angle":
             forms.append(columns * _declared_force(s)[:, None])
-        out += [shapes.over(domain, one, *shapes.each("knot", one, s.unit)) for one in forms]
+        note = OWN_FORCE if domain == "current" and s.force else ""
+        out += [shapes.over(domain, one, *shapes.each("knot", one, s.unit), note=note) for one in forms]
     return out
 
 

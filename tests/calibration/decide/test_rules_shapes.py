@@ -262,6 +262,21 @@ def test_friction_of_the_place_that_is_larger_than_friction_feeds_energy(
         assert feeds_energy(s) == ((0, why) if told else None)
 
 
+@pytest.mark.parametrize(
+    ("friction", "more", "turns"), [(2.0, 3.0, True), (2.0, -3.0, True), (2.0, 1.0, False)]
+)
+def test_friction_that_one_way_pushes_feeds_energy(friction: float, more: float, turns: bool) -> None:
+    way, size = np.sign(A), np.abs(np.tanh(A))
+    s = of(
+        friction * way + more * size,
+        replace(one("friction_asymmetry", size), labels=(("coulomb_asymmetry", "N m"),)),
+        base=way[:, None],
+        base_labels=[("coulomb", "N m")],
+    )
+    why = "beside it friction one way comes out negative, which feeds energy"
+    assert feeds_energy(s) == ((0, why) if turns else None)
+
+
 CLEAN = np.arange(ROWS) // 50 % 2 == 0  # in stretches, so that the noise's filter has their past
 
 
