@@ -72,6 +72,7 @@ def problem_of(view: View, records: list[Run], hold_out: list[str], delay_s: flo
         held=held,
         period_s=period,
         ar_order=0,
+        known=rig.constants,
         block_s=max(_memory(view) * period, float(np.sum(valid)) * period / BLOCKS),
     )
     if _own_offsets(view):

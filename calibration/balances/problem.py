@@ -53,6 +53,7 @@ class Problem:
     turned: Mask | None = None
     slow: bool = False  # declared terms are nuisances, fitted on all rows
     untold: float = 0.0  # of the rows held out, that are not judged as no fitted row is like them
+    known: Mapping[str, float] = field(default_factory=dict)  # coefficients of terms that y is without
     fresh: Array | None = None  # columns of nuisances refitted on held-out rows (an offset per segment)
 
     @property

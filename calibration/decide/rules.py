@@ -12,6 +12,7 @@ import numpy as np
 
 from calibration.arrays import Mask
 from calibration.balances.candidate import Candidate
+from calibration.balances.problem import Estimate
 from calibration.decide import thresholds as limits
 from calibration.decide.accept import refuse, scores
 from calibration.decide.heldout import HeldOut
@@ -31,7 +32,8 @@ Rule = Callable[[Selection], tuple[int, str] | None]
 #: declared terms that are positive in every drive: a fit with a negative one feeds energy
 POSITIVE = ("inertia", "viscous", "coulomb", "resistance", "torque_constant")
 #: friction that every drive has: where nobody stated it, it comes before what might stand in for it
-EXPECTED = ("coulomb_change", "viscous_change")
+CHANGE = "coulomb_change"
+EXPECTED = (CHANGE, "viscous_change")
 #: domains that a column of the log tells which is neither the motion nor the clock
 OTHER_COLUMNS = ("current", "temperature")
 
@@ -353,13 +355,21 @@ def _turned(s: Selection) -> str:
         surely = x.value < -SURE_Z * x.error < 0 and was[name].value > -SURE_Z * was[name].error
         if name in POSITIVE and (was[name].value > 0 > x.value or surely):
             return name
-        if name != "coulomb":
-            continue
-        most = max(x.value, 0.0) + SURE_Z * x.error
-        pairs = (b for c, b in s.fitted if NAMES[c.name].waves_of_friction and c.width == 2)
-        if x.value > 0 and max((float(np.hypot(*b)) for b in pairs), default=0.0) > most:
-            return "friction at some places"
-        told = ((label, abs(b)) for c, sizes in s.fitted for label, b in zip(c.labels, sizes, strict=False))
-        if any(label == (COULOMB, s.problem.unit) and b > most for label, b in told):
-            return "friction one way"
+    if not now.keys() & {"coulomb", "viscous"}:  # one way only friction is an offset
+        return ""
+    most = _friction(s)
+    pairs = (b for c, b in s.fitted if NAMES[c.name].waves_of_friction and c.width == 2)
+    if max((float(np.hypot(*b)) for b in pairs), default=0.0) > most:
+        return "friction at some places"
+    told = ((label, abs(b)) for c, sizes in s.fitted for label, b in zip(c.labels, sizes, strict=False))
+    if any(label == (COULOMB, s.problem.unit) and b > most for label, b in told):
+        return "friction one way"
     return ""
+
+
+def _friction(s: Selection) -> float:
+    """Friction at every speed, declared or found, with what its error may add, in the response's unit."""
+    own = s.problem.named(s.after).get("coulomb", Estimate(0.0, 0.0))
+    more = sum(float(sizes.sum()) for c, sizes in s.fitted if c.name == CHANGE)
+    level = own.value + s.problem.known.get("coulomb", 0.0) + more
+    return max(level, 0.0) + SURE_Z * own.error

@@ -15,6 +15,7 @@ from calibration.decide.scan import Contender, few, fit_with, look
 from calibration.decide.selection import NO_SCORES, Refusal, Selection
 from calibration.statistics.regression import under
 from calibration.statistics.surrogate import Scores, basis, orthonormal_blocks, score, together
+from calibration.statistics.thresholds import SURE_Z
 
 
 def select(
@@ -87,7 +88,10 @@ class _Search:
         """Accept what is expected by itself, before anything is searched for."""
         for c in self._testable([c for name in rules.EXPECTED for c in self.candidates if c.name == name]):
             found = self.accepted(self.picks, [c], tries=1, further=False)
-            self.picks = self.picks.keep([*self.picks.chosen, *found])
+            more = self.picks.keep([*self.picks.chosen, *found])
+            # along one speed either friction is the other, and both are large
+            if not (bad := rules.negative(more, SURE_Z)) or bad == rules.negative(self.picks, SURE_Z):
+                self.picks = more
 
     def _testable(self, some: list[Candidate]) -> list[Candidate]:
         """Those that the log has rows enough for."""

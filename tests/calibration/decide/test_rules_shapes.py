@@ -277,6 +277,21 @@ def test_friction_that_one_way_pushes_feeds_energy(friction: float, more: float,
     assert feeds_energy(s) == ((0, why) if turns else None)
 
 
+@pytest.mark.parametrize(
+    ("found", "known", "turns"), [(0.0, 0.0, True), (2.0, 0.0, False), (0.0, 2.0, False)]
+)
+def test_friction_of_the_place_needs_friction_that_is_declared_known_or_found(
+    found: float, known: float, turns: bool
+) -> None:
+    way = np.sign(A)
+    pair = line("position_friction", np.linspace(0, 40, ROWS), 1.0)
+    pair = replace(pair, columns=pair.columns * way[:, None])
+    more = [one("coulomb_change", way)] if found else []
+    y = A + found * way + pair.columns[:, 0]
+    s = of(y, pair, *more, base=A[:, None], base_labels=[("viscous", "N m s")], known={"coulomb": known})
+    assert (feeds_energy(s) is not None) == turns
+
+
 CLEAN = np.arange(ROWS) // 50 % 2 == 0  # in stretches, so that the noise's filter has their past
 
 

@@ -8,8 +8,9 @@ import pytest
 from calibration.balances.candidate import Candidate
 from calibration.decide.accept import SHORT, least_share
 from calibration.decide.parameters import finding_of, parameters_of
-from calibration.decide.select import select
-from calibration.decide.thresholds import MOST_EFFECTS
+from calibration.decide.select import _Search, select
+from calibration.decide.selection import Selection
+from calibration.decide.thresholds import MARGIN, MOST_EFFECTS
 from calibration.decide.verdict import judge
 from calibration.names import NAMES
 from tests.calibration.decide.made import PERIOD_S, line, problem, term
@@ -224,3 +225,19 @@ def test_friction_that_nobody_stated_comes_before_what_stands_in_for_it(
     assert [c.candidate.name for c in s.chosen][:1] == names
     rest = select(problem(y), have[:2], rng)
     assert bool(rest.chosen) == bool(names) and rest.candidates[:1] == have[: len(names)]
+
+
+def test_friction_that_nobody_stated_turns_no_other_one_negative() -> None:
+    """A wave of the force is in the speed, too: all but one speed tells no friction that grows with it."""
+    rng = np.random.default_rng(12)
+    way = np.repeat([1.0, -1.0], ROWS // 2)
+    wave, other = np.sin(np.arange(ROWS) / 17.0), np.sin(np.arange(ROWS) / 23.0)
+    speed = way * (1.0 + 0.05 * (0.8 * wave + 0.6 * other))
+    p = problem(way * (1.0 + 0.5 * wave) + 0.1 * rng.standard_normal(ROWS), way[:, None])
+    p = replace(p, base_labels=[("coulomb", "N m")])
+    have = [term("viscous_change", speed[:, None])]
+    sound = replace(p, y=0.4 * speed + 0.6 * way + 0.002 * rng.standard_normal(ROWS))
+    for drive, names in ((p, []), (sound, ["viscous_change"])):
+        search = _Search(Selection.of(drive), have, MARGIN, 0)
+        search.expect()
+        assert [c.name for c in search.picks.candidates] == names
