@@ -16,6 +16,7 @@ from calibration.names.brake_drag import one_way
 from calibration.names.friction_warmup import OF_COULOMB
 from calibration.names.gravity_imbalance import once_a_turn
 from calibration.names.scene import Scene
+from calibration.names.structural_mode import another_body
 
 # share of the usual stroke: contacts slide after some hundred micrometres (Al-Bender, Lampaert, Swevers 2005)
 WIDEST = 0.05
@@ -87,7 +88,7 @@ def unnamed(findings: list[Finding], controls: Sequence[Mapping[str, Any]]) -> l
 def as_told(findings: list[Finding], scene: Scene) -> list[Finding]:
     """Findings of a balance of forces with the names that the log carries."""
     named = findings
-    for told in (of_no_stage, of_a_guess, once_a_turn, one_way, _wide_loop):
+    for told in (of_no_stage, of_a_guess, once_a_turn, one_way, another_body, _wide_loop):
         named = [told(f, scene) for f in named]
     named = [_turned_gap(f) for f in named]
     return _one_loop(named) if scene.force else named

@@ -44,8 +44,7 @@ class Timed:
 
 def timed(view: View, made: Make, problem: Problem, channel: str, find: Find) -> Timed:
     """A delay, only where names without it do not explain as much; `made`: the balance by its delay, s."""
-    scene = _scene_of_the_force(view, problem.once, channel)
-    delay, close = effort_delay(scene, lines_over_place(scene))
+    delay, close = force_delay(view, problem.once, channel)
     hold = None
     if delay is not None and is_hold(delay, view.period_s):
         value, delay = delay.parameters["delay"].value, None
@@ -87,6 +86,12 @@ def timed(view: View, made: Make, problem: Problem, channel: str, find: Find) ->
             delay = replace(delay, share=max(1 - (alone / before) ** 2, 0.0))
         return Timed(moved, late, delay, declared)
     return Timed(plain_loop, found)
+
+
+def force_delay(view: View, p: Problem, channel: str) -> tuple[Finding | None, str]:
+    """How late the column of a force is, and what would tell it, as `effort_delay` has it."""
+    scene = _scene_of_the_force(view, p, channel)
+    return effort_delay(scene, lines_over_place(scene))
 
 
 def _scene_of_the_force(view: View, p: Problem, channel: str) -> Scene:

@@ -13,7 +13,7 @@ from calibration.balances.problem import Problem
 from calibration.balances.view import STANDSTILLS, View, choose_rows, fade
 from calibration.balances.width import NYQUIST
 from calibration.decide.heldout import cross_validate
-from calibration.look.delay import Make, Timed, left_by_the_declared
+from calibration.look.delay import Make, Timed, force_delay, left_by_the_declared
 from calibration.look.looked import Balance
 from calibration.names.unknown import KNOTS
 from calibration.names.unknown_shapes import spline_columns
@@ -129,31 +129,40 @@ def _together(p: Problem) -> float:
     return found if abs(found) > FOLLOWS else 0.0
 
 
-def turned(view: View, problem: Problem) -> list[str]:
+def turned(view: View, problem: Problem, made: Make) -> list[str]:
     """Turn the response's sign, in place, where masses and friction together come out negative, or a second
     sensor falls as the first one rises.
 
     The sign convention is then the other one; a note says so.
     """
-    r, rows, x = view.response, problem.train, problem.base
+    r = view.response
     if r.channel == "position2" and (r.ratio or _together(problem)) < 0.0:
         view.response = replace(r, gain=-r.gain, ratio=None if r.ratio is None else -r.ratio)
         return [
             f"{r.channel}: falls as the position rises. Its sign, and that of what is found, is turned here"
         ]
-    if not r.is_force or r.channel == "acceleration":
+    if not r.is_force or r.channel == "acceleration" or not _against(view, problem):
         return []
-    # neither a weight that nobody declared must turn the sign, nor a spring or a stop
-    x = np.column_stack([x, spline_columns(view.x[view.rows], KNOTS)])
-    if view.turn:
-        x = np.column_stack([x, waves(view.x[view.rows] / view.turn * 2 * np.pi, (1,))])
-    beta = np.linalg.lstsq(x[rows], problem.y[rows], rcond=1e-8)[0]
-    heavy = [k for k, (n, _) in enumerate(problem.base_labels) if n in ("inertia", "viscous", "coulomb")]
-    share = [float(beta[k] * np.std(x[rows, k])) for k in heavy]
-    if not share or sum(share) >= 0 or max(share) >= -0.2 * min(share):
+    # half a period late, a force is against the motion, too
+    delay, _ = force_delay(view, problem.once, r.channel)
+    if delay is not None and not _against(view, made(delay.parameters["delay"].value)):
         return []
     view.response = replace(r, gain=-r.gain)
     return [
         f"{r.channel}: points against the motion, so it is what acts on the drive, or the position"
         " counts the other way. Its sign is turned here, and so are the signs of what is found in it"
     ]
+
+
+def _against(view: View, p: Problem) -> bool:
+    """Whether masses and friction together come out negative.
+
+    Neither a weight that nobody declared does that, nor a spring or a stop.
+    """
+    x, rows = np.column_stack([p.base, spline_columns(view.x[view.rows], KNOTS)]), p.train
+    if view.turn:
+        x = np.column_stack([x, waves(view.x[view.rows] / view.turn * 2 * np.pi, (1,))])
+    beta = np.linalg.lstsq(x[rows], p.y[rows], rcond=1e-8)[0]
+    heavy = [k for k, (n, _) in enumerate(p.base_labels) if n in ("inertia", "viscous", "coulomb")]
+    share = [float(beta[k] * np.std(x[rows, k])) for k in heavy]
+    return bool(share) and sum(share) < 0 and max(share) < -0.2 * min(share)

@@ -1,10 +1,12 @@
 """A second mass on a spring: it answers accelerations at its own frequency."""
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
 from calibration.balances.filters import by_piece
-from calibration.finding import Parameter
+from calibration.finding import UNKNOWN, Parameter
 from calibration.names.inplant import Facts, Made, as_found, value
 from calibration.names.name import Array, Beside, Candidate, Finding, Name, Scene, tried
 from calibration.names.scene import HALF
@@ -26,6 +28,8 @@ SLOWEST_HZ = 0.5
 AXIS_HZ = np.geomspace(1.8, 14.2, 48)
 # part of critical, tried there: either side of what structures have (Altintas 2012)
 AXIS_DAMPINGS = (0.008, 0.03)
+# of a turn, rms, that a structure's second mass is off its foot at most. ASSUMPTION: a degree
+BENDS = 1 / 360
 SEEN = 0.4  # part of the rate of the analysed rows, for a frequency: quicker is not seen. ASSUMPTION
 # part of the rate of the rows, for a frequency: where the bilinear transform still holds. arithmetic
 QUICKEST = 0.45
@@ -66,6 +70,20 @@ def columns(s: Scene) -> list[Candidate]:
         steps = (0.05 * f, 0.02) if s.pair is None else (0.01 * f, 0.3 * damping)
         out.append(tried(NAME.name, shape, size, at=at, steps=steps, sign=1, frequency=f))
     return out
+
+
+def another_body(f: Finding, s: Scene) -> Finding:
+    """A second mass that turns further on its spring than a structure bends has no name."""
+    v = s.view
+    if f.name != NAME.name or s.pair is not None or not v.turn:
+        return f
+    hertz, damping = (f.parameters[k].value for k in ("frequency", "damping"))
+    a = second_mass(v.second(v.x), v.file, v.period_s, hertz, max(damping, LEAST_DAMPED))
+    off = float(np.std(a[v.ok])) / (2 * np.pi * hertz) ** 2
+    if off <= BENDS * v.turn:
+        return f
+    far = f"{off:.2g} {s.angle_unit} rms off its foot, more than a structure bends: a pendulum, another joint"
+    return replace(f, name=UNKNOWN, parameters={}).noted(far)
 
 
 def second_mass(a: Array, file: NDArray[np.int64], dt: float, f: float, damping: float) -> Array:

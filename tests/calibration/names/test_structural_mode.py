@@ -6,11 +6,11 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from calibration.finding import Finding, Parameter
+from calibration.finding import UNKNOWN, Finding, Parameter
 from calibration.inputs.declaration import Response
 from calibration.names.inplant import Facts
 from calibration.names.scene import Scene
-from calibration.names.structural_mode import NAME, columns, lacks, rings, second_mass, to_plant
+from calibration.names.structural_mode import NAME, another_body, columns, lacks, rings, second_mass, to_plant
 from tests.calibration.names.made import PERIOD_S, back_and_forth, drive
 
 ONE = np.zeros(60_000, dtype=np.int64)
@@ -174,3 +174,14 @@ def test_an_axis_has_modes_a_width_apart_and_two_dampings_each() -> None:
     assert 0.001 < low < 0.01 < 0.02 < high < 0.1  # either side of what structures have
     assert max(c.point[0] for c in columns(axis(0.05))) == pytest.approx(8.0, rel=0.045)
     assert all(c.point[0] < 8.0 for c in columns(axis(0.05)))
+
+
+@pytest.mark.parametrize(("size_rad", "name"), [(0.05, NAME.name), (0.2, UNKNOWN)])
+def test_a_second_mass_that_turns_by_degrees_is_another_body(size_rad: float, name: str) -> None:
+    """At half its frequency it is a third of the motion off its foot: 0.7 or 2.7 degrees rms."""
+    s = drive(size_rad * 10 * sine(0.5), unit="rad", turn=2 * np.pi)
+    told = {"frequency": Parameter(1.0, "Hz"), "damping": Parameter(0.03, "1")}
+    found = another_body(Finding(NAME.name, "T", "time", parameters=told, frequency=1.0), s)
+    assert (found.name, bool(found.parameters)) == (name, name == NAME.name)
+    linear = drive(size_rad * 10 * sine(0.5), turn=None)
+    assert another_body(Finding(NAME.name, "T", "time", parameters=told), linear).name == NAME.name
