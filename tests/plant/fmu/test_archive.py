@@ -123,7 +123,8 @@ def compiler(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[Command]:
     """A compiler that is there, notes how it is called, and copies what it finds in its folder."""
     calls: list[Command] = []
 
-    def run(command: Command, **_: Any) -> SimpleNamespace:
+    def run(command: Command, **options: Any) -> SimpleNamespace:
+        assert options == {"capture_output": True, "text": True, "check": False}
         calls.append(command)
         folder = next(each[2:] for each in command if each.startswith("-I"))
         made = command[command.index("-o") + 1]
@@ -185,7 +186,15 @@ def test_without_a_word_the_compiler_is_python_s_own(
 def test_kernels_are_compiled_once_and_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     made: list[str] = []
 
-    def compiled(name: str, *_: object) -> bytes:
+    def compiled(name: str, function: object, signature: object) -> bytes:
+        assert callable(function)
+        row = "Array(float64, 1, 'C', False, aligned=True)"
+        assert (
+            str(signature)
+            == {"prepare": f"({row}, {row}) -> none", "advance": f"({row}, int64) -> none"}[
+                name.removeprefix("kernel_")
+            ]
+        )
         made.append(name)
         return name.encode()
 

@@ -7,7 +7,10 @@ import pytest
 
 from plant.effects import REGISTRY
 from plant.fmu.tables import header
+from plant.fmu.variables import exported
 from plant.kernels import layout as at
+from plant.model import load, with_effects
+from plant.parts import EffectModel
 from plant.rows import KINDS, number_from
 from plant.world import Numbers
 from tests.plant.fmu.sample import DECLARED, axis
@@ -16,9 +19,9 @@ MADE = axis()
 TEXT = header(MADE, "{token}")
 
 
-def table(name: str) -> list[Any]:
+def table(name: str, text: str = TEXT) -> list[Any]:
     """An initialiser as nested lists; numbers as they stand."""
-    (body,) = re.findall(rf" {name}\[\](?:\[AT_ROW\])? = (\{{.*?\}});\n", TEXT, re.DOTALL)
+    (body,) = re.findall(rf" {name}\[\](?:\[AT_ROW\])? = (\{{.*?\}});\n", text, re.DOTALL)
     found: list[Any] = eval(body.replace("{", "[").replace("}", "]"), {})
     return found
 
@@ -89,3 +92,9 @@ def test_rows_begin_as_the_plant_s_own() -> None:
     assert mesh[1] == KINDS[REGISTRY["gear_mesh"].terms[0].formula]
     assert mesh[2:6] == [0.0, 0.0, 0.0, number_from(3, "ra.gear_mesh.0")]
     assert mesh[6:] == pytest.approx([2 * 27 * 360.488748, 180.244374, 0.0], rel=1e-5)
+
+
+def test_a_supply_belongs_to_no_motor() -> None:
+    sagging = with_effects(load("low_preload"), "dec", (EffectModel("supply_sag"), EffectModel("adc_gain")))
+    rows = table("ROWS", header(exported(sagging, "dec", 1), ""))
+    assert rows == [[1, 1, 0, 2], [0, 0, 2, 3], [0]]
