@@ -31,11 +31,11 @@ def made(*effects: EffectModel, base: PlantModel | None = None) -> tuple[list[di
 
 def test_a_wave_becomes_the_effort_against_it() -> None:
     """A sin(order angle + phase) is A sin(phase) of the cosine and A cos(phase) of the sine."""
-    (row,), left = made(effect("gear_mesh", "mesh3", 2, amplitude=7.0, phase=0.6))
+    (row,), left = made(effect("gear_mesh", "mesh3", 2, amplitude=7.0, phase=0.7))
     assert row == {
         "order": 500.0,
-        "cosine_steps": round(-7 * sin(0.6) / PER_STEP, 4),
-        "sine_steps": round(-7 * cos(0.6) / PER_STEP, 4),
+        "cosine_steps": round(-7 * sin(0.7) / PER_STEP, 4),
+        "sine_steps": round(-7 * cos(0.7) / PER_STEP, 4),
         "torque_Nm": 7.0,
         "source": "gear_mesh on mesh3, harmonic 2",
     }

@@ -33,9 +33,9 @@ def test_settings_are_those_of_the_board() -> None:
     assert ADC_COUNTS_PER_A == pytest.approx(0.1 * 8 * 1024 / 5) == pytest.approx(163.84)
     delays = tuple(late(column, 0.001 * (column + 1)) for column in range(5))
     part = with_effects(bare(), "ra", delays).axes.ra
-    made = loop._settings(model(), part, 77.0)
-    expected = [1167, 100, 3000, 10, 10, 65e-6, 77.0, 0.001, 0.002, 0.003, 0.004, 0.005]
-    assert made.tolist() == pytest.approx(expected, rel=1e-12)  # 0.285 * 4096 = 1167.4, 0.0245 * 4096 = 100.4
+    made = loop._settings(model(ki=2.5, counter_split=0.8), part, 77.0)
+    expected = [1167, 10240, 3000, 80, 10, 65e-6, 77.0, 0.001, 0.002, 0.003, 0.004, 0.005]
+    assert made.tolist() == pytest.approx(expected, rel=1e-12)  # 0.285 * 4096 = 1167.4
     assert len(made) == control.SETTINGS and LATENCY_S == 65e-6
 
 
@@ -80,6 +80,22 @@ def test_a_set_point_becomes_counts_of_a_tick() -> None:
     log = simulate(model(), "ra", 0.01, Excitation(setpoint=3600.0))
     assert log.effort.tolist() == [485]
     assert log.setpoint.tolist() == [3600.0]
+
+
+def test_the_kernel_gets_set_points_in_q16_and_efforts_in_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[list[float]] = []
+
+    def control_loop(_: object, __: object, ticks: np.ndarray, effort: np.ndarray, *___: object) -> None:
+        asked.extend((ticks.tolist(), effort.tolist()))
+
+    monkeypatch.setattr(loop, "control_loop", control_loop)
+    simulate(model(), "ra", 0.01, Excitation(setpoint=3600.0, effort=90.0))
+    assert asked == [[1568 * 65536] * 2, [90.0] * 2]
+
+
+def test_without_a_set_point_and_an_effort_nothing_pulls() -> None:
+    open_loop = simulate(model(), "ra", 0.02, Excitation(setpoint=np.array([np.nan, np.nan])))
+    assert open_loop.effort.tolist() == [0, 0]
 
 
 def test_a_set_point_may_be_one_of_every_tick() -> None:
