@@ -107,3 +107,74 @@ def test_an_argument_that_is_no_parameter_is_one_clear_error() -> None:
             TypeError, match=r"gravity_imbalance: .*in this order, of \(x, seed, amplitude, phase\)"
         ):
             dataclasses.replace(REGISTRY["gravity_imbalance"], terms=(Term(Hook.AXIS_TORQUE, wrong),))
+
+
+SOURCE = Path(__file__).parents[2] / "docs" / "sources" / "effects.md"
+ODD = {
+    "stribeck_change", "presliding", "viscous_change", "coulomb_change", "friction_asymmetry",
+    "position_friction", "load_friction", "friction_warmup", "preload_change", "diode_braking", "brake_drag",
+}  # fmt: skip
+"""All that changes friction, and a motor that brakes: they change their sign with the motion."""
+WAVES = {
+    "position_friction", "gravity_imbalance", "gear_eccentricity", "gear_mesh", "motor_cogging",
+    "torque_ripple", "bearing_pass",
+}  # fmt: skip
+OF_MOTORS = {
+    "motor_cogging", "torque_ripple", "backlash_loss", "adc_offset", "adc_gain", "pwm_deadband",
+    "winding_heating", "magnet_weakening", "command_disturbance",
+}  # fmt: skip
+
+
+def test_effects_stand_in_the_order_of_the_catalogue() -> None:
+    rows = [line for line in SOURCE.read_text(encoding="utf-8").splitlines() if line.startswith("| `")]
+    listed = [word for row in rows for word in re.findall(r"`(\w+)`", row.split("|")[1])]
+    assert len(listed) == 40
+    placed = {effect.catalogue_row: name for name, effect in REGISTRY.items()}
+    assert placed == dict(enumerate([*listed, "unknown"], 1))
+    assert OUTSIDE == 1000
+
+
+def test_effects_are_odd_waves_or_of_motors() -> None:
+    assert {name for name, effect in REGISTRY.items() if effect.odd} == ODD
+    assert {name for name, effect in REGISTRY.items() if effect.wave} == WAVES
+    of_motors = {name for name, effect in REGISTRY.items() if any(term.of_motors for term in effect.terms)}
+    assert of_motors == OF_MOTORS
+
+
+def test_what_begins_a_log_with_the_motion_before() -> None:
+    lasting = {name for name, effect in REGISTRY.items() if any(term.lasting for term in effect.terms)}
+    assert lasting == {"cable_wrap", "winding_heating", "unknown"}
+
+
+@pytest.mark.parametrize(
+    ("name", "parameter", "numbers"),
+    [
+        ("brake_drag", "start", (-1_000_000, 1_000_000, 0)),
+        ("brake_drag", "duration", (0, 1_000_000_000, 1_000_000)),
+        ("preload_change", "start", (-100_000, 100_000, 0)),
+        ("preload_change", "duration", (0.01, 100_000, 1)),
+        ("encoder_subdivision", "lines", (100, 30_000_000, 32_768)),
+    ],
+)
+def test_wide_bounds_are_exact(name: str, parameter: str, numbers: tuple[float, ...]) -> None:
+    """The page that lists them rounds to six digits."""
+    found = REGISTRY[name].parameter(parameter)
+    assert (found.low, found.high, found.default) == numbers
+
+
+def test_a_parameter_that_is_none_is_an_error() -> None:
+    with pytest.raises(KeyError, match="colour"):
+        REGISTRY["brake_drag"].parameter("colour")
+
+
+def test_signals_have_their_places() -> None:
+    """By the pages of the kernel: 14 signals, two free places, seven numbers of friction."""
+    from plant.effects import signals as sig
+
+    names = ("TIME", "ANGLE", "RATE", "MOTOR_ANGLE", "MOTOR_RATE", "CURRENT", "COMMAND", "TORQUE", "REVERSAL",
+             "TEMPERATURE", "SUPPLY_CURRENT", "ACCELERATION", "MOTOR", "LAGGING", "ENCODER")  # fmt: skip
+    assert [getattr(sig, name) for name in names] == list(range(15))
+    assert (sig.SIGNALS, sig.SIGMA0, sig.SIGMA1, sig.SIGMA2, sig.COULOMB) == (16, 16, 17, 18, 19)
+    assert (sig.STICTION, sig.STRIBECK_RATE, sig.STRIBECK_EXPONENT, sig.VECTOR) == (20, 21, 22, 24)
+    assert (sig.MEMORY, sig.SEED, sig.MOTOR_HOOKS, sig.HOOK_COUNT) == (4, 3, 5, 12)
+    assert [hook.value for hook in sig.Hook] == list(range(14))
