@@ -120,6 +120,8 @@ SECOND = {"order": 3.0, "amplitude": 2.0, "phase": 0.4, "second": 0.5, "second_p
         ("shaft_compliance", {"compliance": 2e-7}, {"TORQUE": 30.0}, -6e-6),
         ("command_disturbance", {"amplitude": 0.1, "frequency": 2.0, "phase": pi, "shape": 0.5},
          {"TIME": 0.1}, 0.1 * sin(0.4 * pi + pi)),
+        ("command_disturbance", {"amplitude": 0.1, "frequency": 0.8, "phase": 0.3, "shape": 1.0},
+         {"TIME": 0.8}, -0.1),
     ],
 )  # fmt: skip
 def test_a_formula_is_its_equation(
