@@ -185,3 +185,13 @@ def test_wind_is_one_noise_through_three_lags() -> None:
     assert after == pytest.approx(expected)
     torque = wind_torque.formula(x, *before, 10.0, 5.0)
     assert torque == pytest.approx(10 + 5 * sum(s * b for s, b in zip(shares, before, strict=True)))
+
+
+def test_a_second_mass_is_pulled_by_its_spring_and_damped_by_the_axis() -> None:
+    """Newton for a step: its rate by lead and difference of rates, then its lead by the new difference."""
+    update = REGISTRY["structural_mode"].terms[0].update
+    assert update is not None
+    pulse, dt = 2 * pi * 9.0, 1e-3
+    rate = 0.5 - dt * (pulse**2 * 2e-3 + 2 * 0.1 * pulse * (0.5 - 0.2))
+    after = update(at({"RATE": 0.3})[0], dt, 2e-3, 0.5, 0.2, 9.0, 0.1)
+    assert after == pytest.approx((2e-3 + dt * (rate - 0.3), rate, 0.3))

@@ -1,4 +1,4 @@
-"""What a plant file may say: unit and bounds of every number, and what one that is not given is.
+"""Unit and bounds of every number of a plant file, and those that are not given.
 
 Bounds are wide on purpose: a power of ten or two about the machine's own number. They keep out a wrong unit.
 """

@@ -1,4 +1,4 @@
-"""What a plant makes of its model: late columns, effects of the log writer, the rail, first readings."""
+"""A plant out of its model: late columns, effects of the log writer, the rail, first readings."""
 
 from dataclasses import replace
 

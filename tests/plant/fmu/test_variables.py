@@ -1,4 +1,4 @@
-"""What an exported axis has, by the plant file that it is made of: SI units, bounds, places."""
+"""Numbers and switches of an exported axis, by the plant file that it is made of: SI units, bounds, places."""
 
 from dataclasses import replace
 from math import pi
@@ -86,7 +86,7 @@ def test_what_says_where_an_effect_acts_is_fixed_and_so_is_all_that_acts_elsewhe
 
 
 def test_numbers_are_those_of_the_axis_without_effects_and_at_rest_at_zero() -> None:
-    """What effects change once is in their own rows: shaft_compliance is not in the number."""
+    """Changes that effects make once are in their own rows: shaft_compliance is not in the number."""
     numbers = dict(zip(Numbers._fields, axis().parameters[:DECLARED], strict=True))
     assert numbers["compliance"].start == numbers["swinging"].start == numbers["angle"].start == 0.0
     assert 0.0 < numbers["phase_a"].start < 1.0 and numbers["phase_a"].start != numbers["phase_b"].start
