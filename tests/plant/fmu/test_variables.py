@@ -1,4 +1,4 @@
-"""Numbers and switches of an exported axis, by the plant file that it is made of: SI units, bounds, places."""
+"""Numbers and switches of an exported axis, by the plant file that it is made of: units, bounds, places."""
 
 from dataclasses import replace
 from math import pi
