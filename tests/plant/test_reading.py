@@ -231,3 +231,7 @@ def test_an_effect_is_read_with_all_that_it_has() -> None:
     shape = "{target: torque, domain: time, knots: [[1, 2]], source: a test}"
     other = Reader("a.yaml").effect(node(f"{{name: unknown, function: {shape}, enabled: false}}"), "here")
     assert other.function is not None and other.function.knots == ((1.0, 2.0),) and not other.enabled
+
+
+def test_a_turn_has_1296000_arcsec() -> None:
+    assert to_si(648_000.0, "arcsec") == pytest.approx(pi, rel=1e-12)
