@@ -221,3 +221,39 @@ def test_an_axis_is_advanced_by_its_steps(monkeypatch: pytest.MonkeyPatch) -> No
     w = np.zeros(3)
     library._advance(w, 7)
     assert asked == [(w, 7)]
+
+
+def test_a_kernel_becomes_an_object_file_for_any_processor_of_this_kind(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Nothing of Python's calls is made; the text is checked, and its name is the one that C knows."""
+    llvm, numba = pytest.importorskip("llvmlite.binding"), pytest.importorskip("numba")
+    done: list[object] = []
+    signature = object()
+
+    def njit(given: object, **options: object) -> Any:
+        assert given is signature
+        done.append(options)
+        code = SimpleNamespace(get_llvm_str=lambda: "define @long.name() { call @long.name() }")
+        made = SimpleNamespace(library=code, fndesc=SimpleNamespace(llvm_func_name="long.name"))
+        return lambda _: SimpleNamespace(signatures=["first"], overloads={"first": made})
+
+    def parsed(text: str) -> SimpleNamespace:
+        done.append(text)
+        return SimpleNamespace(verify=lambda: done.append("checked"))
+
+    def machine(**options: object) -> SimpleNamespace:
+        done.append(options)
+        return SimpleNamespace(emit_object=lambda _: bytearray(b"code"))
+
+    monkeypatch.setattr(numba, "njit", njit)
+    monkeypatch.setattr(llvm, "parse_assembly", parsed)
+    target = SimpleNamespace(create_target_machine=machine)
+    monkeypatch.setattr(llvm, "Target", SimpleNamespace(from_default_triple=lambda: target))
+    assert library._object("kernel_some", lambda: None, signature) == b"code"
+    assert done == [
+        {"error_model": "numpy", "_nrt": False, "no_cpython_wrapper": True, "no_cfunc_wrapper": True},
+        "define @kernel_some() { call @kernel_some() }",
+        "checked",
+        {"opt": 2, "reloc": "pic", "codemodel": "default"},
+    ]
