@@ -235,3 +235,6 @@ def test_an_effect_is_read_with_all_that_it_has() -> None:
 
 def test_a_turn_has_1296000_arcsec() -> None:
     assert to_si(648_000.0, "arcsec") == pytest.approx(pi, rel=1e-12)
+    assert factor("deg", "arcsec") == pytest.approx(3600.0) and factor("arcsec", "deg") == pytest.approx(
+        1 / 3600
+    )

@@ -137,3 +137,8 @@ def test_a_period_that_is_not_that_of_the_knots_has_chords_at_its_ends() -> None
     open_ends = [(0.0, 0.0), (1.0, 2.0), (3.0, 0.5)]
     (begins,) = np.diff(over("cubic", open_ends, np.array([0.0, 1e-4]), 3.0)) / 1e-4
     assert begins == pytest.approx(2.0, abs=1e-3)
+
+
+def test_a_period_may_be_short() -> None:
+    u = np.array([0.05, 0.55, 1.05, -0.45])
+    assert over("linear", [(0.0, 1.0), (0.1, 3.0)], u, 0.5) == pytest.approx([2.0] * 4)
