@@ -37,7 +37,6 @@ class FocusPort:
         self._rest = float(start_steps)  # where the rotor was at _since_ns
         self._goal = float(start_steps)  # where the field holds it
         self._since_ns = 0
-        self._driven = False
 
     def coils(self, t_ns: int, phase: int, energised: bool, hold: bool) -> None:
         """Set the coils: half-step phase 0..7; not energised, the rotor stays, braked (`hold`) or by
@@ -48,7 +47,6 @@ class FocusPort:
         at = self.position(t_ns)
         self._rest = at
         self._since_ns = t_ns
-        self._driven = energised
         if not energised:
             # regenerative hold and free differ in torque only; the screw does not drive back
             self._goal = at

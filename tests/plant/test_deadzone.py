@@ -3,7 +3,7 @@
 import pytest
 
 from plant import model
-from plant.deadzone import bias_steps, dead_zone, step_amperes
+from plant.deadzone import bias_steps, dead_zone, drop_v, ohms, step_amperes, step_torque
 from tests.plant.bench import changed
 from tests.plant.stage import Circuit, run
 
@@ -37,3 +37,31 @@ def test_P4_the_bias_is_beyond_all_that_may_be_lost() -> None:
     without = model.load("low_preload")
     assert dead_zone(without, without.axes.ra.motor) == 0.0
     assert bias_steps(without, without.axes.ra.motor) == 36
+
+
+def test_a_current_that_always_dies_is_an_error() -> None:
+    """R / (2 L f) of 1: a ripple as large as the supply."""
+    ohm = model.load("low_preload_bridge").axes.ra.motor.resistance.si
+    limit_mh = 1000 * ohm / (2 * 20e3)
+    for inductance_mh, good in ((limit_mh * 1.001, True), (limit_mh * 0.999, False)):
+        plant = changed(model.load("low_preload_bridge"), motor__inductance=inductance_mh)
+        if good:
+            assert dead_zone(plant, plant.axes.ra.motor) > 0.9
+            continue
+        with pytest.raises(ValueError, match="the current dies at every duty"):
+            dead_zone(plant, plant.axes.ra.motor)
+
+
+def test_the_dead_zone_by_its_formula() -> None:
+    """(D (V + d) - d) / R is half of D V / (2 L f): D = d / (V + d - V R / (2 L f))."""
+    plant = model.load("low_preload_bridge")
+    motor = plant.axes.ra.motor
+    ripple = 24.0 * 0.495 / (2 * 2.72e-3 * 20e3)
+    assert dead_zone(plant, motor) == pytest.approx(0.7 / (24.7 - ripple))
+    assert (drop_v(motor), ohms(motor)) == (0.7, 0.495)
+    assert step_amperes(plant, motor) == pytest.approx(24.7 / 0.495 / 3000)
+    assert step_torque(plant, motor) == pytest.approx(24.7 / 0.495 / 3000 * 0.44 * 360.488748, rel=1e-6)
+    plain = model.load("low_preload")
+    motor = plain.axes.ra.motor
+    assert (drop_v(motor), ohms(motor)) == (0.0, pytest.approx(2.385))
+    assert step_amperes(plain, motor) == pytest.approx(24.0 / 2.385 / 3000)

@@ -36,3 +36,8 @@ def test_the_shutter_moves_between_its_ends() -> None:
     dome.slide(120 * SECOND, 1)
     dome.slide(126 * SECOND, 0)
     assert dome.shutter(130 * SECOND) == pytest.approx(0.2)
+
+
+def test_nothing_moves_before_a_motor_is_on() -> None:
+    dome = DomePort()
+    assert (dome.azimuth(60 * SECOND), dome.encoder(60 * SECOND), dome.shutter(60 * SECOND)) == (0.0, 0, 0.0)

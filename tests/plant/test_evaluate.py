@@ -8,7 +8,7 @@ from scipy.interpolate import interp1d
 
 from plant.effects import signals as sig
 from plant.effects.unknown import COUNT, DOMAIN, FIRST, KIND, KNOTS, PERIOD, formula
-from plant.evaluate import evaluate, signals, values_over
+from plant.evaluate import evaluate, evaluate_function, signals, values_over
 from plant.kernels.layout import ROW, ROW_MEMORY
 from plant.parts import EffectModel, Number
 from plant.rows import KINDS, values, vector
@@ -142,3 +142,31 @@ def test_play_is_the_play_operator() -> None:
     assert np.allclose(moved[79:84], 0.0, atol=1e-18)  # less than the gap back, and forth again
     assert np.allclose(moved[84:89], 0.0, atol=1e-18)
     assert np.allclose(moved[89:], -ARCSEC)
+
+
+def test_memory_begins_at_the_first_row() -> None:
+    """A winding is cold there, whatever time the rows begin at; then it warms by its own time."""
+    t_s = np.array([100.0, 130.0, 160.0])
+    rows = signals(3, {sig.TIME: t_s, sig.CURRENT: np.full(3, 2.0)})
+    y = evaluate("winding_heating", rows, {"thermal_resistance": 1.5, "time_constant": 60.0, "winding": 2.0})
+    warmth = 1.5 * 2.0**2 * 2.0 * (1 - np.exp(-(t_s - 100.0) / 60.0))
+    assert y == pytest.approx(2.0 * 0.00393 * warmth)
+
+
+def test_without_a_seed_it_is_nought() -> None:
+    rows = signals(4, {sig.TIME: np.arange(4) * 0.01})
+    numbers = {"mean": 0.0, "deviation": 5.0, "correlation_time": 0.5}
+    with np.errstate(over="ignore"):
+        given: tuple[dict[str, float], ...] = ({}, {"seed": 0.0}, {"seed": 1.0})
+        none, nought, one = (evaluate("wind_torque", rows, numbers | more) for more in given)
+    assert np.array_equal(none, nought) and not np.array_equal(none, one)
+
+
+def test_a_function_over_a_period_returns() -> None:
+    knots, heights = np.array([0.0, 1.0, 3.0]), np.array([0.0, 2.0, 0.0])
+    u = np.array([0.0, 1.0, 2.5])
+    assert evaluate_function(knots, heights, u + 6.0, 3.0) == pytest.approx(
+        evaluate_function(knots, heights, u, 3.0)
+    )
+    assert evaluate_function(knots, heights, np.array([4.0]), 3.0) == pytest.approx([2.0])
+    assert evaluate_function(knots, heights, np.array([4.0])) == pytest.approx([0.0])  # flat beyond

@@ -1,6 +1,7 @@
 """The focus drive as the paper describes it (section 3.2)."""
 
 from itertools import pairwise
+from math import exp
 
 import pytest
 from hypothesis import given, settings
@@ -88,3 +89,41 @@ def test_P12_lvdt_covers_the_travel_and_tells_the_indices_apart() -> None:
     assert max(abs(a - b) for a, b in zip(ideal, real, strict=True)) < 0.5 * 1.25
     assert real == sorted(real)
     assert real != ideal
+
+
+def test_it_settles_from_the_place_where_it_is() -> None:
+    """Three half steps away by the coils: exp(-t / 2 ms) of them are left."""
+    focus = FocusPort(MODEL)
+    focus.coils(5 * MS, 3, True, False)
+    assert focus.position(5 * MS) == focus.position(0) == 0.0
+    assert focus.position(7 * MS) == pytest.approx(3 * (1 - exp(-1.0)))
+    focus.coils(7 * MS, 1, True, False)
+    left = 3 * (1 - exp(-1.0)) - 1
+    assert focus.position(9 * MS) == pytest.approx(1 + left * exp(-1.0))
+
+
+@pytest.mark.parametrize("phase", range(8))
+def test_the_field_pulls_to_the_nearest_place_of_its_phase(phase: int) -> None:
+    """Up to three half steps either way; the opposite one cannot pull."""
+    for turns in (-3, 0, 2):
+        focus = port(8.0 * turns)
+        focus.coils(0, phase, True, False)
+        away = phase if phase < 4 else 0 if phase == 4 else phase - 8
+        assert focus.position(1000 * MS) == pytest.approx(8 * turns + away)
+
+
+@pytest.mark.parametrize(
+    ("place", "high"), [(199.4, False), (199.5, True), (200.4, True), (200.5, True), (200.6, False)]
+)
+def test_the_index_is_one_half_step_wide(place: float, high: bool) -> None:
+    """Four counts of 1600, a half step of 400, at half a turn; and a turn away from it."""
+    for turns in (-2, -1, 0, 1):
+        assert port(place + 400 * turns).index(0) is high
+    assert not port(0.0).index(0) and not port(400.0).index(0)
+
+
+@pytest.mark.parametrize("share", [-1.0, -0.4, 0.0, 0.5, 1.0])
+def test_the_lvdt_has_its_gain_its_bend_and_its_offset(share: float) -> None:
+    """Of 5 V: 3 % too much, 0.4 % of a cubic that is none at the ends, and 50 mV."""
+    expected = 2.5 * (1 + 1.03 * share + 0.004 * (share**3 - share)) + 0.05
+    assert port(800 * share).lvdt(0) == pytest.approx(expected, abs=1e-9)

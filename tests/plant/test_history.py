@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from plant import loop
-from plant.effects import REGISTRY
+from plant.effects import REGISTRY, unknown
 from plant.effects import signals as sig
 from plant.evaluate import signals
 from plant.kernels import layout as at
 from plant.loop import Excitation, simulate
 from plant.model import PlantModel, with_effects
-from plant.parts import EffectModel, Number
+from plant.parts import EffectModel, Function, Number
 from plant.rows import KINDS
 from plant.units import ARCSEC
 from plant.world import build
@@ -120,3 +120,15 @@ def test_a_start_in_motion_is_half_a_step_ahead() -> None:
     )
     assert w[at.FRICTION] == pytest.approx(level + f.viscous.si * rate)
     assert w[at.BRISTLE] == pytest.approx(level / f.bristle_stiffness.si)
+
+
+def test_stops_found_in_data_have_the_state_of_the_motion_before() -> None:
+    """A stop of 0.2 rad after half a radian up and 0.1 back: 0.2 less 0.1."""
+    function = Function("torque", "axis_angle", "stop", 0.0, ((0.2, 30.0),), "a test")
+    w = build(with_effects(bare(), "ra", (EffectModel("unknown", function=function),)), 1, {})[0]
+    angle = np.array([0.0, 0.25, 0.5, 0.4])
+    history = np.stack([signals(4, {sig.TIME: np.arange(4.0), sig.ANGLE: angle})] * 2)
+    loop._remember(w, history)
+    row = w[at.EFFECTS + at.ROW_MEMORY : at.EFFECTS + at.ROW]
+    assert row[:2] == pytest.approx([0.4, 1.0])
+    assert unknown.stops(row) == pytest.approx(30.0 * 0.1 / 0.2)

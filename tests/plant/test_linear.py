@@ -129,3 +129,8 @@ def test_a_motor_is_a_voltage_behind_resistance_and_inductance(
         assert a[torque, torque] == pytest.approx(-per_s)
         assert a[torque, speed] == pytest.approx(-(constant**2) / motor.inductance.si if brakes else 0.0)
         assert a[speed, torque] == pytest.approx(1.0 / (motor.rotor_inertia.si * RATIO**2))
+
+
+def test_one_input_and_one_disturbance(model: PlantModel) -> None:
+    a, b, push = system(model)
+    assert a.shape == (SIZE, SIZE) and b.shape == push.shape == (SIZE, 1)

@@ -147,3 +147,24 @@ def test_a_wrong_section_is_one_line(line: str, message: str) -> None:
         model.loads(text)
     assert message in str(found.value)
     assert "\n" not in str(found.value)
+
+
+def test_a_fork_bends_by_the_cosine_of_the_hour_angle() -> None:
+    h, d = sky(HOUR_ANGLES, DECLINATIONS, LATITUDE, only(fork_flexure=300))
+    assert h == pytest.approx(HOUR_ANGLES, abs=1e-12)
+    assert np.degrees(DECLINATIONS - d) * 3600 == pytest.approx(300 * np.cos(HOUR_ANGLES))
+
+
+def test_below_five_degrees_refraction_stays_what_it_is_there() -> None:
+    """At an altitude of one degree: 60 arcsec over sin 5 deg, times the cosine of the altitude."""
+    low = math.radians(1.0)
+    h, d = sky(math.pi, math.pi / 2 - LATITUDE + low, LATITUDE, only(refraction=60))
+    lifted, _ = horizontal(h, d)
+    expected = 60 / math.sin(math.radians(5.0)) * math.cos(low)
+    assert math.degrees(float(lifted) - low) * 3600 == pytest.approx(expected, rel=1e-6)
+
+
+def test_shapes_stay() -> None:
+    for shape in ((), (3,), (2, 2)):
+        h, d = sky(np.full(shape, 0.3), np.full(shape, 0.4), LATITUDE, MountErrors())
+        assert h.shape == d.shape == shape

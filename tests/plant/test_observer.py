@@ -134,3 +134,9 @@ def test_sections_answer_as_the_observer_does(model: PlantModel, made: Designed)
             first = half[0]
             half[0] = trace * first + half[1] + g1 * effort + h1 * angle
             half[1] = -determinant * first + g0 * effort + h0 * angle
+
+
+def test_weights_and_noise_are_those_of_the_study() -> None:
+    """`test_weights.py` of the studies picks two of them by decades; a thousandth of the others is alike."""
+    assert (of.POSITION, of.DISTURBANCE, OTHERS) == (1e11, 10.0, (1e-12, 0.01))
+    assert (TICK_S, DELAY_S) == (0.005, 9e-5)

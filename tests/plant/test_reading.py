@@ -103,6 +103,8 @@ def test_a_function_has_its_defaults() -> None:
     found = Reader("a.yaml").function(node(unknown([[0.0, 1.0], [2.0, 3.0]])), "here")
     assert (found.target, found.domain, found.interpolation) == ("torque", "axis_angle", "cubic")
     assert (found.period, found.motor, found.knots) == (0.0, 0, ((0.0, 1.0), (2.0, 3.0)))
+    falling = Reader("a.yaml").function(node(unknown([[0.0, 9.0], [2.0, 3.0]])), "here")
+    assert falling.knots == ((0.0, 9.0), (2.0, 3.0))
     more = Reader("a.yaml").function(
         node(unknown([[1, 2]], period=4.5, motor="2", domain="velocity")), "here"
     )
@@ -163,3 +165,76 @@ def test_every_part_of_a_file_is_read_where_it_stands() -> None:
             ModelError, match=rf"line {line + 1}: .*{name}x: unknown field; did you mean '{name}'"
         ):
             loads("\n".join(wrong))
+
+
+@pytest.mark.parametrize(("value", "good"), [
+    (-4.0 - 4e-9, True), (-4.0 - 5e-9, False), (-4.0, True), (2.0 + 4e-9, True), (2.0 + 5e-9, False),
+])  # fmt: skip
+def test_a_rounding_may_be_beyond_a_bound(value: float, good: bool) -> None:
+    """A part in 10^9 of the larger bound, as a number may come from another unit."""
+    text = NUMBER.format(repr(value), "V")
+    if good:
+        assert Reader("a.yaml").number(node(text), "here", "V", -4.0, 2.0).value == value
+    else:
+        assert "is outside -4 to 2 V" in fails("number", text, "V", -4.0, 2.0)
+
+
+def test_what_is_no_list_of_effects_is_refused() -> None:
+    for text in ("some", "{name: gear_mesh}"):
+        assert fails("effects", text) == "a.yaml, line 1: here: expected a list of effects"
+    for text in ("''", "null"):
+        assert Reader("a.yaml").effects(node(text), "here") == ()
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("{stage: mesh1}", "here.name: missing"),
+        ("[1]", "here: expected a mapping of fields"),
+        ("{name: gear_mash}", "here.name: 'gear_mash' is not known; did you mean 'gear_mesh'?"),
+        ("{name: gear_mesh}", "here.stage: missing"),
+        (
+            "{name: gear_mesh, stage: motor}",
+            "here.stage: 'motor' is not known; use one of mesh1, mesh2, mesh3",
+        ),
+        ("{name: wind_torque, stage: motor}", "here.stage: unknown field"),
+        ("{name: wind_torque, harmonic: 1}", "here.harmonic: unknown field"),
+        ("{name: wind_torque, enabled: maybe}", "here.enabled: 'maybe' is not known; use one of true, false"),
+        (
+            "{name: wind_torque, parameters: {men: 1}}",
+            "here.parameters.men: unknown field; did you mean 'mean'?",
+        ),
+        ("{name: wind_torque, parameters: {mean: 1}}", "here.parameters.mean: expected a mapping of fields"),
+        ("{name: gear_mesh, stage: mesh1, harmonic: x}", "here.harmonic: expected a number, not 'x'"),
+        ("{name: unknown}", "here.function: missing"),
+        ("{name: unknown, function: {}}", "here.function.target: missing"),
+        ("{name: unknown, function: {}, stage: axis}", "here.stage: unknown field"),
+    ],
+)
+def test_a_wrong_effect_is_said_at_its_place(text: str, words: str) -> None:
+    assert fails("effect", text).startswith(f"a.yaml, line 1: {words}")
+
+
+def test_an_effect_is_read_with_all_that_it_has() -> None:
+    found = Reader("a.yaml").effect(
+        node(
+            "{name: gear_mesh, stage: mesh3, harmonic: 4, enabled: false,"
+            " parameters: {phase: {value: 90, unit: deg, source: a test}}}"
+        ),
+        "here",
+    )
+    assert (found.name, found.stage, found.harmonic, found.enabled) == ("gear_mesh", "mesh3", 4, False)
+    assert {word: each.si for word, each in found.parameters.items()} == {"phase": pytest.approx(pi / 2)}
+    assert found.function is None
+    stageless = Reader("a.yaml").effect(node("{name: wind_torque}"), "here")
+    assert (stageless.stage, stageless.harmonic, stageless.enabled) == (None, 1, True)
+    shape = "{target: torque, domain: time, knots: [[1, 2]], source: a test}"
+    other = Reader("a.yaml").effect(node(f"{{name: unknown, function: {shape}, enabled: false}}"), "here")
+    assert other.function is not None and other.function.knots == ((1.0, 2.0),) and not other.enabled
+
+
+def test_a_turn_has_1296000_arcsec() -> None:
+    assert to_si(648_000.0, "arcsec") == pytest.approx(pi, rel=1e-12)
+    assert factor("deg", "arcsec") == pytest.approx(3600.0) and factor("arcsec", "deg") == pytest.approx(
+        1 / 3600
+    )

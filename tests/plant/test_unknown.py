@@ -113,3 +113,32 @@ def test_stops_follow_and_slip_one_by_one() -> None:
     expected = [2 * a + 2 * b for a, b in zip(first, second, strict=True)]
     assert over("stop", stops, path) == pytest.approx(expected)
     assert over("stop", stops, path, motor=1.0, of=1.0) == pytest.approx(np.zeros(9))
+
+
+def test_a_closed_period_may_begin_anywhere_and_have_three_knots() -> None:
+    """By hand: the parabola's slope across the ends is (-1 * 1 + 2 * 2) / (2 + 1) = 1, a chord's is 2."""
+    for first in (0.0, 5.0, -0.75):
+        knots = [(first, 0.0), (first + 1.0, 2.0), (first + 3.0, 0.0)]
+        for turns in (0, -2, 1):
+            start = first + 3.0 * turns
+            before, at, behind = over("cubic", knots, start + np.array([-1e-4, 0.0, 1e-4]), 3.0)
+            assert [(at - before) / 1e-4, (behind - at) / 1e-4] == pytest.approx([1.0, 1.0], abs=1e-3)
+            top, middle = over("linear", knots, start + np.array([1.0, 2.0]), 3.0)
+            assert (top, middle) == pytest.approx((2.0, 1.0))
+        (begins,) = np.diff(over("cubic", knots, first + np.array([0.0, 1e-4]))) / 1e-4
+        assert begins == pytest.approx(2.0, abs=1e-3)
+
+
+def test_a_period_that_is_not_that_of_the_knots_has_chords_at_its_ends() -> None:
+    knots = [(0.0, 0.0), (1.0, 2.0), (3.0, 0.0)]
+    for period in (2.9, 3.1, 6.0):
+        (begins,) = np.diff(over("cubic", knots, np.array([0.0, 1e-4]), period)) / 1e-4
+        assert begins == pytest.approx(2.0, abs=1e-3)
+    open_ends = [(0.0, 0.0), (1.0, 2.0), (3.0, 0.5)]
+    (begins,) = np.diff(over("cubic", open_ends, np.array([0.0, 1e-4]), 3.0)) / 1e-4
+    assert begins == pytest.approx(2.0, abs=1e-3)
+
+
+def test_a_period_may_be_short() -> None:
+    u = np.array([0.05, 0.55, 1.05, -0.45])
+    assert over("linear", [(0.0, 1.0), (0.1, 3.0)], u, 0.5) == pytest.approx([2.0] * 4)

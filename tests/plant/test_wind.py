@@ -9,7 +9,7 @@ from plant.effects import signals as sig
 from plant.evaluate import evaluate, signals
 from plant.parts import EffectModel, Number
 from plant.plant import Plant
-from plant.wind import INTENSITY, LEE, share
+from plant.wind import INTENSITY, LEE, share, wind
 from plant.wind import torque as torque_of
 from tests.plant.bench import SECOND, with_effect
 
@@ -79,3 +79,25 @@ def test_the_dome_keeps_off_more_the_farther_the_slit_looks_away() -> None:
     assert len(set(shares[:17])) == 17  # to 80 deg it falls
     assert share(np.radians(-40), 1.0) == pytest.approx(share(np.radians(400), 1.0))
     assert share(0.0, 0.0) == 0.0 and share(0.0, 0.5) == 0.5
+
+
+def test_a_wind_in_the_slit_is_an_effect_with_its_numbers() -> None:
+    """5 m/s: 0.5 * 25 * 1.2 * 0.33 of mean, two fifths of it, and a metre passes in a fifth of a second."""
+    made = wind(5.0)
+    assert made.name == "wind_torque" and made.enabled and made.stage is None
+    found = {name: (number.value, number.unit) for name, number in made.parameters.items()}
+    assert found["mean"] == (pytest.approx(4.95), "N m")
+    assert found["deviation"] == (pytest.approx(1.98), "N m")
+    assert found["correlation_time"] == (pytest.approx(0.2), "s")
+    assert {number.source for number in made.parameters.values()} == {
+        "wind of 5 m/s in the slit, plant/wind.py"
+    }
+
+
+def test_a_calm_has_eddies_of_a_hundred_seconds() -> None:
+    assert torque_of(0.0) == (0.0, 0.0, pytest.approx(100.0)) and torque_of(0.02)[2] == pytest.approx(50.0)
+
+
+def test_a_slit_lets_in_what_its_width_shows() -> None:
+    assert share(np.radians(60.0), 0.5) == pytest.approx(0.25)
+    assert share(np.radians(89.0), 1.0) == share(np.pi, 1.0) == 0.1

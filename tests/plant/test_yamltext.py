@@ -70,6 +70,7 @@ def test_fifty_brackets_may_be_open() -> None:
         ("a: 1\nb: 2\n", 5),
         ("- &a 1\n- *a\n- *a\n", 4),
         ("- &a [1, 2, 3]\n- *a\n- *a\n- 5\n", 14),
+        ("- &a [1, 2, 3]\n- &a 1\n- *a\n", 7),  # an anchor stands for the last that has it
         ("- 7\n- &a [1, [2, 3]]\n- &b [*a, *a]\n- *b\n", 29),
     ],
 )
@@ -133,3 +134,31 @@ def test_the_nearest_word_is_offered_or_all() -> None:
     assert nearest("Inertya", ["inertia", "gear"]) == "did you mean 'inertia'?"
     assert nearest("xyz", ["inertia", "gear"]) == "use one of inertia, gear"
     assert nearest("xyz", []) == "none is allowed here"
+
+
+def test_a_hundred_thousand_values_may_be_named() -> None:
+    check_yaml("[" + "1," * 99_999 + "]")
+    assert refused("[" + "1," * 100_000 + "]").what.startswith("names more than 100000 values")
+
+
+def test_an_error_says_its_line_where_it_has_one() -> None:
+    assert str(TextError("is wrong")) == "is wrong" and TextError("is wrong").line is None
+    assert str(TextError("is wrong", 3)) == "line 3: is wrong"
+
+
+def test_what_the_reader_refuses_is_one_line() -> None:
+    found = refused("a: \x07").what
+    assert found.startswith("is not YAML: ") and "\n" not in found and "position" not in found
+    assert len(found) > len("is not YAML: ")
+
+
+@pytest.mark.parametrize(
+    ("character", "good"),
+    [("\ud7ff", True), ("\ud800", False), ("\udfff", False), ("\ue000", True), ("\x1f", False), (" ", True)],
+)
+def test_halves_of_characters_are_no_text(character: str, good: bool) -> None:
+    if good:
+        yamltext._check_scalar(character, 1)
+        return
+    with pytest.raises(TextError, match=r"line 1: .* is no character of a text"):
+        yamltext._check_scalar(character, 1)
