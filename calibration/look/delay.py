@@ -4,16 +4,18 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.optimize import minimize_scalar
 
 from calibration.balances.problem import Problem
 from calibration.balances.view import View
 from calibration.decide.residual import MOST_LEFT, part_left
 from calibration.decide.rules import dominant
 from calibration.decide.selection import Selection
-from calibration.decide.thresholds import CLEAR_SHARE, PLAINLY, REMAINDER
-from calibration.finding import Finding
+from calibration.decide.thresholds import AS_MUCH, CLEAR_SHARE, PLAINLY, REMAINDER
+from calibration.finding import NORMAL, Finding
 from calibration.inputs.declaration import Response
 from calibration.look.search import lines_over_place, scene_of
+from calibration.names.channel_delay import late_column
 from calibration.names.lateness import effort_delay, is_hold
 from calibration.names.scene import Scene
 from calibration.names.unknown import plain
@@ -26,6 +28,9 @@ Make = Callable[[float], Problem]
 # that came so far: theirs took less than MATTERS (names/lateness.py)
 # of the held-out mean square, that a delay must take off beside the names found without it
 EARNS = 0.05
+# times the delay beside a friction curve, within which it is looked for beside the declared terms. ASSUMPTION
+WIDE = 2.0
+STARTS = 41  # values that are tried there before the best is refined. ASSUMPTION
 
 
 @dataclass
@@ -61,11 +66,10 @@ def timed(view: View, made: Make, problem: Problem, channel: str, find: Find) ->
         return hold
     if delay is None:
         return Timed(plain_loop, found, close=close)
-    moved = made(delay.parameters["delay"].value)
-    late = find(moved)
+    declared = Selection.of(problem)
+    delay, moved, late = _settled(delay, declared, made, find)
     now, was = late[0].held.after, found[0].held.after
     simpler = len(late[0].chosen) < len(found[0].chosen)
-    declared = Selection.of(problem)
     before = declared.held.before
     # beside a name that explains nearly everything a delay may be what its formula leaves
     least = REMAINDER * (before**2 - now**2) if dominant(found[0]) else 0.0
@@ -86,6 +90,35 @@ def timed(view: View, made: Make, problem: Problem, channel: str, find: Find) ->
             delay = replace(delay, share=max(1 - (alone / before) ** 2, 0.0))
         return Timed(moved, late, delay, declared)
     return Timed(plain_loop, found)
+
+
+def _settled(delay: Finding, declared: Selection, made: Make, find: Find) -> tuple[Finding, Problem, Found]:
+    """The delay beside any friction curve, or beside the declared terms alone; its balance; what is found.
+
+    Whichever leaves less once names are found, or as much with fewer. Their distance is an error of both.
+    """
+    p = delay.parameters["delay"]
+    moved = made(p.value)
+    late = find(moved)
+    tried = np.linspace(-WIDE * abs(p.value), WIDE * abs(p.value), STARTS)
+    step, start = float(tried[1] - tried[0]), float(min(tried, key=lambda d: _left(made(float(d)))))
+    best = minimize_scalar(lambda d: _left(made(d)), bounds=(start - step, start + step), method="bounded")
+    other, error = float(best.x), abs((p.high or p.value) - (p.low or p.value)) / 2
+    if abs(other - p.value) <= max(error, step):
+        return delay, moved, late
+    again = made(other)
+    found = find(again)
+    (one, _, _), (rival, _, _), before = found, late, declared.held.before**2
+    less, few = one.held.after < rival.held.after, len(one.chosen) < len(rival.chosen)
+    if not less and not (few and before - one.held.after**2 > AS_MUCH * (before - rival.held.after**2)):
+        return delay, moved, late
+    spread = float(np.hypot(error / NORMAL, (other - p.value) / 2))
+    return late_column(delay.note, other, spread, delay.share), again, found
+
+
+def _left(p: Problem) -> float:
+    """Mean square on fitted rows beside the declared terms."""
+    return float(np.mean(p.plain_fit(p.train)[1][p.train] ** 2))
 
 
 def force_delay(view: View, p: Problem, channel: str) -> tuple[Finding | None, str]:
