@@ -64,6 +64,8 @@ of this repository. Measured on {day}. How the finder decides: [calibration](../
 - The rules were developed with these very logs in view. The figures say that they fit, not that they
   generalise. Of 42 other logs, met for the first time on 2026-11-27, 17 answers are right or hold the
   right class. Ten are half right, twelve say nothing or another domain, and three have a wrong name alone.
+  Of 25 further ones eighteen are right or hold the right class. Four say `unknown` where a delay or nothing
+  more is there, and three have a wrong name alone.
 
 ## Found
 {found}
