@@ -54,7 +54,7 @@ def look_at_forces(view: View, records: list[Run], options: Options) -> Balance:
     if few := few or law_of_its_loop(view, problem, floor_of(view, problem)[0]):
         bare = Selection.of(problem)
         return Balance(key=problem.channel, row=ROWS[problem.channel], selection=bare, needs=[few])
-    notes = [*filter(None, [motion]), *turned(view, problem, made)]
+    notes = turned(view, problem, made)
     when, remarks = _found(view, made)
     event = leave_out_event(view, made, when.found[0]) if view.response.is_force else None
     if event is not None:
@@ -65,7 +65,8 @@ def look_at_forces(view: View, records: list[Run], options: Options) -> Balance:
     told = _told(view, when, notes)
     law = follows(view, made(), told.selection.held.after) if told.missing else []
     findings = [*told.findings, event] if event else told.findings
-    return replace(told, findings=findings, remarks=[*remarks, *told.remarks, *law, *doubts(view, told)])
+    remarks = [*filter(None, [motion]), *remarks, *told.remarks, *law, *doubts(view, told)]
+    return replace(told, findings=findings, remarks=remarks)
 
 
 def _found(view: View, made: Make) -> tuple[Timed, list[str]]:
