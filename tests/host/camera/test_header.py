@@ -25,8 +25,8 @@ def frame(model: CameraModel = GUIDE, binning: int = 1, lit: bool = True) -> Fra
 def test_a_header_tells_the_detector_and_its_optics() -> None:
     found = header(frame(MAIN, binning=2), NAINITAL, CLOCK)
     said = {key: found[key] for key in (
-        "ROWORDER", "INSTRUME", "TELESCOP", "DATE-OBS", "IMAGETYP", "GAIN", "CCD-TEMP", "XBINNING", "YBINNING",
-        "RADESYS", "CTYPE1", "CTYPE2", "CUNIT1", "CUNIT2",
+        "ROWORDER", "INSTRUME", "TELESCOP", "DATE-OBS", "IMAGETYP", "GAIN", "CCD-TEMP", "XBINNING",
+        "YBINNING", "RADESYS", "CTYPE1", "CTYPE2", "CUNIT1", "CUNIT2",
     )}  # fmt: skip
     assert said == {
         "ROWORDER": "TOP-DOWN", "INSTRUME": "KAF-16801E", "TELESCOP": "schmidt",

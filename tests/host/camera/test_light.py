@@ -207,8 +207,10 @@ def test_a_disc_out_of_focus_is_even_and_as_wide_as_the_cone(pixels: float) -> N
 
 
 def test_a_small_disc_has_the_areas_of_a_circle() -> None:
-    """Of radius one, by integrals: in the middle 1, beside it 0.4566, in the corners the rest of π. An eighth of
-    a pixel is coarse: 3 %."""
+    """Of radius one, by integrals: in the middle 1, beside it 0.4566, in the corners the rest of π.
+
+    An eighth of a pixel is coarse: 3 %.
+    """
     disc = module._disc(MAIN, [Look(0, 0, 0, 0, 1.2 * MAIN.pixel_m)])
     beside = math.asin(0.5) + 0.5 * math.sqrt(0.75) - 0.5
     corner = (math.pi - 1 - 4 * beside) / 4
