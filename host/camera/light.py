@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from bus.units import ARCSEC_PER_RAD
+from bus.units import ARCSEC, ARCSEC_PER_RAD
 from host.camera.models import CameraModel, Look, Window
 from host.camera.readout import cosines
 from host.camera.seeing import Wander, sigma_arcsec
@@ -33,6 +33,8 @@ _STEP_RAD = 1e-4
 """By which the sky's turning is found; its curvature is a ten-millionth there."""
 _WIDER = 1.1
 """A field is flat to some per cent at its edge: tan 2° is 2° but for a thousandth. The rest is spare."""
+_MOVED_RAD = 200 * ARCSEC
+"""A star may have moved by since J2000.0, and is looked for where it was: 87 years of Arcturus, the fastest."""
 _FINE = 8
 """Parts of a pixel, each way, by which the edge of an image out of focus is drawn."""
 
@@ -94,7 +96,7 @@ def _near(
     dec += math.radians(north)
     ra += math.radians(east) / max(math.cos(dec), _STEP_RAD)
     half = math.hypot(window.width, window.height) / 2 + room_px
-    return sky.near(ra, dec, min(_WIDER * half * model.pixel_rad, math.pi / 2))
+    return sky.near(ra, dec, min(_WIDER * half * model.pixel_rad + _MOVED_RAD, math.pi / 2))
 
 
 def _sampled(model: CameraModel, looks: Sequence[Look], wander: Wander) -> Array:
