@@ -88,12 +88,13 @@ def test_a_tick_shows_the_stage_from_its_first_beginning(
 ) -> None:
     ticks: list[Callable[[], None]] = []
     waits: list[float] = []
+    did: list[str] = []
     seen: list[tuple[float | None, str]] = []
 
     def thread(target: Callable[[], None], daemon: bool) -> SimpleNamespace:
         assert daemon
         ticks.append(target)
-        return SimpleNamespace(start=lambda: None, join=lambda: None)
+        return SimpleNamespace(start=lambda: did.append("start"), join=lambda: did.append("join"))
 
     def wait(seconds: float) -> bool:
         waits.append(seconds)
@@ -105,7 +106,7 @@ def test_a_tick_shows_the_stage_from_its_first_beginning(
         yield lambda done, step: seen.append((done, step))
 
     monkeypatch.setattr(progress, "Thread", thread)
-    monkeypatch.setattr(progress, "Event", lambda: SimpleNamespace(wait=wait, set=lambda: None))
+    monkeypatch.setattr(progress, "Event", lambda: SimpleNamespace(wait=wait, set=lambda: did.append("set")))
     monkeypatch.setattr(progress, "shown", shown)
     with progress.stages("calibrating", {"a": 10.0, "b": 20.0}) as enter:
         for at_s, name in ((4.0, ""), (5.0, "b"), (7.0, ""), (8.0, "b"), (9.0, ""), (20.0, "")):
@@ -115,4 +116,4 @@ def test_a_tick_shows_the_stage_from_its_first_beginning(
             else:
                 ticks[0]()
     assert seen == [(4.0, "a"), (14.0, "b"), (18.0, "b"), (None, "b, longer than usual")]
-    assert set(waits) == {1.0}
+    assert set(waits) == {1.0} and did == ["start", "set", "join"]
