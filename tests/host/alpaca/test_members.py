@@ -381,7 +381,8 @@ def test_parameters_are_read_as_the_standard_says() -> None:
 
 @pytest.mark.parametrize(("text", "value"), [
     ("", 0), ("ClientID=", 0), ("ClientID=%207%20", 7), ("ClientID=4294967295", 2**32 - 1),
-    ("ClientID=4294967296", None), ("ClientID=00000000001", None), ("ClientID=-1", None), ("ClientID=x", None),
+    ("ClientID=4294967296", None), ("ClientID=00000000001", None), ("ClientID=-1", None),
+    ("ClientID=x", None),
     ("ClientID=%D9%A1", None), ("ClientID=0000000001", 1),
 ])  # fmt: skip
 def test_identifiers_have_32_bits(text: str, value: int | None) -> None:
