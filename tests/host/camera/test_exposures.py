@@ -151,7 +151,7 @@ def test_a_dark_frame_has_the_dark_current_alone(lit: bool) -> None:
     The sky of 21 mag adds a quarter of an electron a second, 658 counts.
     """
     order = Order(seconds=1000.0, window=Window(left=600, top=400, width=30, height=30), lit=lit)
-    looks = (at(0.0), at(1000.0))
+    looks = (at(500.0), at(1500.0))
     frame = expose(GUIDE, order, looks, DARK, NAINITAL, CLOCK, Still(), generator(1, "test"))
     dark = 500 + 0.5 * 1000 / 0.4
     sky = 0.2634 * 1000 / 0.4 if lit else 0.0
