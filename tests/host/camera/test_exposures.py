@@ -127,6 +127,19 @@ def test_a_frame_that_was_aborted_while_it_is_made_does_not_come() -> None:
     assert len(kept) == 1 and made.frame is None and made.state == State.IDLE
 
 
+def test_an_aborted_frame_does_not_come_in_the_place_of_the_next() -> None:
+    go = threading.Event()
+    made = camera(lambda _: go.wait(10.0))
+    made.start(Order(seconds=0.1, window=WINDOW))
+    for t_s in (1.0, 1.1):
+        made.take(at(t_s))
+    made.abort()
+    made.start(Order(seconds=0.1, window=WINDOW))
+    go.set()
+    settled(made)
+    assert made.frame is None and made.state == State.EXPOSING
+
+
 def test_every_exposure_has_noise_of_its_own_and_the_seeds() -> None:
     def two() -> list[Frame]:
         kept: list[Frame] = []
