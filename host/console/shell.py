@@ -36,8 +36,7 @@ class Shell:
     def __init__(self, live: Live) -> None:
         self.live = live
         self.desk = AsyncDesk(live.telescope, console=True)
-        request = ui.context.client.request
-        self.day = request is not None and request.cookies.get(_COOKIE) == "1"
+        self.day = ui.context.client.request.cookies.get(_COOKIE) == "1"
         self._controls: list[Any] = []
         self._refresh: list[Callable[[], object]] = []
         self._locked: bool | None = None

@@ -6,7 +6,7 @@ from dataclasses import replace
 from bus.protocol import AxisMode, Device, Opcode, unpack_target
 from bus.protocol.scales import rate_q16
 from bus.units import ARCSEC_PER_RAD
-from host.client import Client, Procedure
+from host.client import Client, ClientError, Procedure
 from host.logs.journal import Logs
 from host.procedures import manual
 from host.procedures.pointing import ENCODERS, Pointing
@@ -342,9 +342,15 @@ class Drive:
         self.parked = True
 
     def settle(self) -> Procedure:
-        """Stop both axes and wait until they rest."""
+        """Stop both axes and wait until they rest; the other one also where a board does not answer."""
+        failed: ClientError | None = None
         for axis in manual.BOARDS:
-            yield from self.client.ask(axis, Opcode.STOP)
+            try:
+                yield from self.client.ask(axis, Opcode.STOP)
+            except ClientError as error:
+                failed = failed or error
+        if failed is not None:
+            raise failed
         if self.powered:
             yield from self.client.until("stop: both axes at rest", self._at_rest, _REST_S)
 

@@ -127,6 +127,19 @@ def test_a_frame_that_was_aborted_while_it_is_made_does_not_come() -> None:
     assert len(kept) == 1 and made.frame is None and made.state == State.IDLE
 
 
+def test_an_aborted_frame_does_not_come_in_the_place_of_the_next() -> None:
+    go = threading.Event()
+    made = camera(lambda _: go.wait(10.0))
+    made.start(Order(seconds=0.1, window=WINDOW))
+    for t_s in (1.0, 1.1):
+        made.take(at(t_s))
+    made.abort()
+    made.start(Order(seconds=0.1, window=WINDOW))
+    go.set()
+    settled(made)
+    assert made.frame is None and made.state == State.EXPOSING
+
+
 def test_every_exposure_has_noise_of_its_own_and_the_seeds() -> None:
     def two() -> list[Frame]:
         kept: list[Frame] = []
@@ -151,7 +164,7 @@ def test_a_dark_frame_has_the_dark_current_alone(lit: bool) -> None:
     The sky of 21 mag adds a quarter of an electron a second, 658 counts.
     """
     order = Order(seconds=1000.0, window=Window(left=600, top=400, width=30, height=30), lit=lit)
-    looks = (at(0.0), at(1000.0))
+    looks = (at(500.0), at(1500.0))
     frame = expose(GUIDE, order, looks, DARK, NAINITAL, CLOCK, Still(), generator(1, "test"))
     dark = 500 + 0.5 * 1000 / 0.4
     sky = 0.2634 * 1000 / 0.4 if lit else 0.0

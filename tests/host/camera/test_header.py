@@ -19,7 +19,7 @@ WINDOW = Window(left=100, top=40, width=8, height=6)
 def frame(model: CameraModel = GUIDE, binning: int = 1, lit: bool = True) -> Frame:
     counts = np.arange(48, dtype=np.uint16).reshape(6, 8)
     order = Order(seconds=0.5, window=WINDOW, binning=binning, lit=lit)
-    return Frame(model=model, order=order, looks=tuple(path(0.5)), counts=counts)
+    return Frame(model=model, order=order, looks=tuple(path(0.5, west_rad_s=1e-4)), counts=counts)
 
 
 def test_a_header_tells_the_detector_and_its_optics() -> None:
@@ -47,7 +47,7 @@ def test_the_date_in_days_is_the_same() -> None:
 
 
 def test_the_place_is_the_true_one_at_half_time() -> None:
-    found, looks = header(frame(), NAINITAL, CLOCK), path(0.5)
+    found, looks = header(frame(), NAINITAL, CLOCK), path(0.5, west_rad_s=1e-4)
     place = [math.degrees(each) for each in catalogued(looks[25], NAINITAL, CLOCK)]
     assert [found["RA"], found["DEC"]] == pytest.approx(place, abs=1e-9)
     assert [found["CRVAL1"], found["CRVAL2"]] == pytest.approx(place, abs=1e-9)

@@ -117,6 +117,8 @@ def test_more_than_a_minute_of_pulses_does_not_wait_and_a_stop_ends_those_that_d
     tracking.advance(1.0)
     assert not tracking.telescope.snapshot.pulse_guiding
     assert not tracking.telescope.drive.pointing.guided
+    tracking.do(lambda t: t.drive.track(True))  # as the others find it, whatever their order
+    tracking.advance(15.0)
 
 
 def test_a_guide_rate_that_would_throw_the_axis_is_refused(tracking: Rig) -> None:
