@@ -41,9 +41,8 @@ def problem_of(view: View, records: list[Run], hold_out: list[str], delay_s: flo
     rig, response, at = view.rig, view.response, view.rows
     driven = "applied" in view.columns
     if driven and response.channel == "acceleration":
-        view = replace(
-            view, columns={**view.columns, "applied": view.delayed(view.columns["applied"], delay_s)}
-        )
+        late = view.delayed(view.columns["applied"], delay_s)
+        view = replace(view, columns={**view.columns, "applied": late})
     y, ok = response_of(view, delay_s)
     terms = _terms(view)
     for name, value in rig.constants.items():
@@ -54,9 +53,8 @@ def problem_of(view: View, records: list[Run], hold_out: list[str], delay_s: flo
     if not view.dynamic and response.is_force:
         valid &= np.abs(view.direction[at]) > 0
     shown = [np.abs(view.speed), *(x for name, _, x in terms if name.startswith(TOLD_BY))]
-    quick = [
-        np.abs(view.at(x)) for name, _, x in terms if name == "inertia"
-    ]  # behind the filter: it is noisy
+    # an acceleration behind the filter: it is noisy
+    quick = [np.abs(view.at(x)) for name, _, x in terms if name == "inertia"]
     held = _held(view, records, hold_out, valid, [*(x[at] for x in shown), *quick])
     period, session = view.period_s * view.step, view.file[at]
     problem = Problem(

@@ -31,8 +31,8 @@ Rule = Callable[[Selection], tuple[int, str] | None]
 
 #: declared terms that are positive in every drive: a fit with a negative one feeds energy
 POSITIVE = ("inertia", "viscous", "coulomb", "resistance", "torque_constant")
-#: friction that every drive has: where nobody stated it, it comes before what might stand in for it
 CHANGE = "coulomb_change"
+#: friction that every drive has: where nobody stated it, it comes before what might stand in for it
 EXPECTED = (CHANGE, "viscous_change")
 #: domains that a column of the log tells which is neither the motion nor the clock
 OTHER_COLUMNS = ("current", "temperature")

@@ -16,7 +16,7 @@ from calibration.finding import NORMAL, Finding
 from calibration.inputs.declaration import Response
 from calibration.look.search import lines_over_place, scene_of
 from calibration.names.channel_delay import late_column
-from calibration.names.lateness import effort_delay, is_hold
+from calibration.names.lateness import STARTS, effort_delay, is_hold
 from calibration.names.scene import Scene
 from calibration.names.unknown import plain
 
@@ -30,7 +30,6 @@ Make = Callable[[float], Problem]
 EARNS = 0.05
 # times the delay beside a friction curve, within which it is looked for beside the declared terms. ASSUMPTION
 WIDE = 2.0
-STARTS = 41  # values that are tried there before the best is refined. ASSUMPTION
 
 
 @dataclass

@@ -52,9 +52,8 @@ def _settled(s: Scene, without: tuple[str, ...], itself: bool) -> tuple[Candidat
         x = np.hstack([p.base, found])
         beta = solve(x[p.train], p.y[p.train])
         smooth = x[:, carried & ~sharp] @ beta[carried & ~sharp] + known
-        load = np.abs(
-            np.interp(np.arange(len(s.view.t)), s.view.rows, smooth) + float(beta[sharp].sum()) * full
-        )
+        behind = np.interp(np.arange(len(s.view.t)), s.view.rows, smooth)
+        load = np.abs(behind + float(beta[sharp].sum()) * full)
         one = _of(s, load)
         found = one.columns
     return one, bool(np.std(load[s.view.ok]) > VARIES * np.mean(load[s.view.ok]))
