@@ -33,6 +33,7 @@ OVER_ITS_TURN = 0.5
 # of what neighbouring rows share: a domain that holds less of it is not where the residual lives. ASSUMPTION
 OF_WHAT_REPEATS = 0.5
 ALONE = "over time alone"
+IN_SIZE = ", in size"  # louder in places: noise is, too, and no function of the place takes it away
 # smooth functions at most: of a force one; of two sensors one over the place, one of a flank of teeth
 MOST = {True: 1, False: 2}
 
@@ -99,7 +100,7 @@ def _where(s: Selection, scene: Scene, rows: Mask, found: Left) -> Left:
         over = float(np.average(each, weights=weight)) if sum(weight) > 0 else 0.0
         return max(domain_share(z, x, p.once.train & rows, test), over)
 
-    shapes = {"": e, ", against the motion": against, ", in size": _size(e, rows, p.session)}
+    shapes = {"": e, ", against the motion": against, IN_SIZE: _size(e, rows, p.session)}
     v: View = scene.view
     places = [Place(name.replace("_", " "), name, x) for name, x in domains(scene)]
     turns = [(g.name, g.period) for g in v.rig.stages if g.period]
@@ -120,7 +121,7 @@ def lives_in(s: Selection, places: Sequence[Place], stacked: int = 1) -> tuple[s
     mine = np.arange(len(e)) // (len(e) // stacked)
     worst = max(range(stacked), key=lambda k: float(np.sum(e[p.test & (mine == k)] ** 2)))
     train, test = p.train & (mine == worst), p.test & (mine == worst)
-    shapes = {"": e, ", in size": _size(e, train, p.session)}
+    shapes = {"": e, IN_SIZE: _size(e, train, p.session)}
     most, place, how = _most(shapes, places, lambda z, x: domain_share(z, x, train, test))
     if most < limits.SHOWN:
         return None, 0.0, "in none of " + ", ".join(x.words for x in places)
@@ -168,7 +169,7 @@ def settle(findings: list[Finding], left: Left | None, channel: str) -> list[Fin
     named = [f for f in findings if f.name != UNKNOWN]
     size = f"{left.times:.1f} floors are left {left.where}"
     if not findings:
-        much = not expected or left.part > MOST_LEFT
+        much = not left.where.endswith(IN_SIZE) and (not expected or left.part > MOST_LEFT)
         return [*expected, *([_unknown(left.domain, channel, left, size)] if left.domain and much else [])]
     if not named or left.part <= MOST_LEFT:
         return expected + findings
@@ -191,7 +192,7 @@ def of_one_domain(findings: list[Finding], left: Left | None) -> list[Finding]:
     """
     smooth = any(f.name == UNKNOWN and f.domain == "axis_angle" and f.stage is None for f in findings)
     where = left.where if left is not None and left.share > OVER_ITS_TURN else ""
-    turn = where.removesuffix(", against the motion").removesuffix(", in size")
+    turn = where.removesuffix(", against the motion").removesuffix(IN_SIZE)
     out: list[Finding] = []
     for f in findings:
         own = f.stage is not None and turn == f"over the turn of {f.stage}"

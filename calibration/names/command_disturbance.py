@@ -42,6 +42,9 @@ EDGE_CELLS = 0.25  # likewise of a square, which rows between its edges do not t
 PHASES = 17
 NEIGHBOURS = 3  # multiples of a repeated motion on either side, that one is compared with. ASSUMPTION
 ALONE = 10.0  # times their power, from where on it stands alone. ASSUMPTION: a motion's fall off slowly
+# part of what the declared terms carry at a frequency, that their own errors leave there. ASSUMPTION:
+# neither an amplifier nor a sensor is linear to better
+OWN_ERRORS = 0.05
 SHAKEN = 0.01  # part of the motion's rms, below which nobody commanded such a wave. ASSUMPTION
 FEW = 4  # files: with more, every file's own phase costs too many columns for more than a sine. ASSUMPTION
 
@@ -86,7 +89,7 @@ def lines(s: Scene, follows: Array, large_first: bool = True) -> list[Candidate]
     few, more = count <= FEW, {"kind": "line", "per_run": count > 1}
     for f in spectral_lines(s, t, want):
         places = over_the_place(s, f)
-        if places is None:
+        if places is None or _of_the_motion(s, t, follows, f):
             continue
         for overtones in ((1,), ODD) if few and 3 * f < top else ((1,),):
 
@@ -112,6 +115,17 @@ def _alone(driven: Array) -> NDArray[np.bool_]:
     beside = np.pad(driven, NEIGHBOURS)
     around = [np.roll(beside, k)[NEIGHBOURS:-NEIGHBOURS] for k in range(-NEIGHBOURS, NEIGHBOURS + 1) if k]
     return np.asarray(driven > ALONE * np.max(around, axis=0))
+
+
+def _of_the_motion(s: Scene, t: Array, follows: Array, hertz: float) -> bool:
+    """Whether errors of what `follows` the motion (n_fitted,) leave such a line, as steps of a stair do."""
+    driven = left = 0.0
+    for k in np.unique(s.problem.session):
+        rows = np.flatnonzero(s.problem.train & (s.problem.session == k))
+        window = np.hanning(len(rows)) * np.exp(-2j * np.pi * hertz * t[rows])
+        for_each = [float(np.abs(window @ (y[rows] - y[rows].mean())) ** 2) for y in (follows, s.residual)]
+        driven, left = driven + for_each[0], left + for_each[1]
+    return left < OWN_ERRORS**2 * driven
 
 
 def over_the_place(s: Scene, hertz: float) -> tuple[str, ...] | None:
