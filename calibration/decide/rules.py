@@ -183,9 +183,13 @@ def larger_than_the_response(s: Selection, k: int) -> bool:
 
 
 def worth_little(s: Selection) -> tuple[int, str] | None:
-    """The effect whose absence the held-out rows notice least, where that is hardly at all."""
-    least = (NAMES[c.name].worth for c in s.candidates)
-    cost = [(_left(x) / _left(s) - 1.0) / w for x, w in zip(_each_left_out(s), least, strict=True)]
+    """The effect whose absence the held-out rows notice least, where that is hardly at all.
+
+    Or it is little beside what nothing explains above a floor: names that are not there take some of that.
+    """
+    unexplained = max(_left(s) - s.problem.floor**2, 0.0) if s.problem.floor else 0.0
+    least = (NAMES[c.name].worth * _left(s) + limits.OF_THE_UNEXPLAINED * unexplained for c in s.candidates)
+    cost = [(_left(x) - _left(s)) / w for x, w in zip(_each_left_out(s), least, strict=True)]
     k = int(np.argmin(cost))
     return (k, "adds too little to what is left when it is left out") if cost[k] < 1.0 else None
 

@@ -122,6 +122,8 @@ ONSET_FINE_S = 0.25  # s to which a stretch's ends are told. ASSUMPTION
 REMAINDER = 0.03
 # of the same, that the strongest effect takes alone: else others are there for themselves. ASSUMPTION
 DOMINANT = 0.95
+# of the held-out mean square above the floor, that an effect must take of it beside all others. ASSUMPTION
+OF_THE_UNEXPLAINED = 0.1
 # of the lesser of two effects, that their sum leaves of them: they cancel each other. ASSUMPTION: a half
 CANCELS = 0.5
 # share of the held-out mean square that names must take below the floor: most of it. ASSUMPTION

@@ -84,6 +84,15 @@ def test_what_is_worth_less_than_its_name_needs_goes(
     names: list[str], left: dict[str, float], gone: int
 ) -> None:
     assert asked(worth_little, Told(names, left)) == gone
+    assert asked(worth_little, Told(names, left, problem=SimpleNamespace(floor=4.0))) == gone
+
+
+@pytest.mark.parametrize(("worth", "gone"), [(0.89, 1), (0.91, None)])
+def test_a_name_takes_more_than_a_tenth_of_what_nothing_explains(worth: float, gone: int | None) -> None:
+    # of 10 that are left 2 are the floor's: a tenth of 8, and the hundredth of 10 that any name needs
+    left = {"lp": 10.0, "p": 12.0, "l": 10.0 + worth}
+    s = Told(["load_friction", "play"], left, problem=SimpleNamespace(floor=2.0**0.5))
+    assert asked(worth_little, s) == gone
 
 
 @pytest.mark.parametrize(
