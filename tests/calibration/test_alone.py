@@ -66,6 +66,7 @@ def test_a_gap_that_every_reversal_crosses_is_no_slip(tmp_path: Path) -> None:
     assert [e["name"] for e in data["effects"]] == ["play"]
 
 
+@pytest.mark.slow
 def test_an_end_stop_is_one_function_of_the_place(tmp_path: Path) -> None:
     """A buffer that is pressed over the last third of the stroke."""
     t, x, u = motion(LONG)
@@ -76,6 +77,7 @@ def test_an_end_stop_is_one_function_of_the_place(tmp_path: Path) -> None:
     assert data["error"]["torque"]["after"] < 1.2 * data["error"]["torque"]["floor"]
 
 
+@pytest.mark.slow
 def test_an_end_stop_is_no_function_of_the_load_that_it_makes(tmp_path: Path) -> None:
     """It pushes 25 times as hard as mass and friction together, which must not turn the sign of the force."""
     t, x, u = motion(LONG)
@@ -86,6 +88,7 @@ def test_an_end_stop_is_no_function_of_the_load_that_it_makes(tmp_path: Path) ->
     assert data["error"]["torque"]["after"] < 0.02 * data["error"]["torque"]["before"]
 
 
+@pytest.mark.slow
 def test_iron_that_saturates_is_a_function_of_the_current(tmp_path: Path) -> None:
     """The force that the motion needs is what is left of the effort, less a tenth of its square at 8 N."""
     t, x, force = motion(LONG)

@@ -86,6 +86,7 @@ def test_files_without_a_clock_have_no_time_among_them(tmp_path: Path, clock: bo
     assert bool(starts) == clock
 
 
+@pytest.mark.slow
 def test_a_warm_up_of_files_without_a_clock_begins_in_every_file(tmp_path: Path) -> None:
     """The same friction, less from file to file: in which order they were measured, nobody says."""
     t, x, u = motion()

@@ -35,6 +35,7 @@ def test_friction_over_the_place_may_be_nine_tenths_of_it(tmp_path: Path) -> Non
     assert data["effects"][0]["parameters"]["amplitude"]["value"] == pytest.approx(0.9 * COULOMB, rel=0.05)
 
 
+@pytest.mark.slow
 def test_bristles_that_give_way_by_and_by_have_their_travel(tmp_path: Path) -> None:
     tables = []
     for k in range(3):

@@ -38,6 +38,7 @@ def test_a_sound_one_has_neither(tmp_path: Path) -> None:
     assert found(answer(tmp_path, RIG, *[night(k) for k in range(3)])) == []
 
 
+@pytest.mark.slow
 def test_a_damaged_tooth_is_a_pulse_at_one_place_of_its_part(tmp_path: Path) -> None:
     tables = []
     for k in range(3):
@@ -52,6 +53,7 @@ def test_a_damaged_tooth_is_a_pulse_at_one_place_of_its_part(tmp_path: Path) -> 
     assert data["error"]["torque"]["after"] < 0.4 * data["error"]["torque"]["before"]
 
 
+@pytest.mark.slow
 def test_a_cable_bundle_pulls_back_and_loops(tmp_path: Path) -> None:
     tables = []
     for k in range(3):

@@ -54,6 +54,7 @@ def test_a_still_offset_is_left_as_it_is(tmp_path: Path) -> None:
     assert not any("wanders" in r for r in data["reasons"]) and found(data) == []
 
 
+@pytest.mark.slow
 def test_a_force_that_comes_and_goes_is_no_walk(tmp_path: Path) -> None:
     tables = []
     for k in range(3):

@@ -99,6 +99,7 @@ def test_it_compiles_where_an_int_has_16_bits(compiler: str, tmp_path: Path) -> 
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
 
 
+@pytest.mark.slow
 def test_no_statement_overflows_or_shifts_what_it_must_not() -> None:
     """Undefined behaviour ends the routine with SIGILL or SIGTRAP."""
     checks = "-fsanitize=signed-integer-overflow,shift,bounds,integer-divide-by-zero"

@@ -25,6 +25,7 @@ def test_a_late_effort_along_one_sine_is_found_by_its_friction(tmp_path: Path) -
     assert abs(delay) == pytest.approx(LATE_S, rel=0.05)
 
 
+@pytest.mark.slow
 def test_half_a_period_late_an_effort_is_late_and_not_against_the_motion(tmp_path: Path) -> None:
     t = np.arange(0, 40.0, PERIOD)
     late, files = 0.11, []

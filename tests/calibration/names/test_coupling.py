@@ -44,6 +44,7 @@ def test_a_joint_that_does_nothing_is_no_effect(tmp_path: Path) -> None:
     assert reported(tmp_path, *moving(3))["effects"] == []
 
 
+@pytest.mark.slow
 def test_a_weight_behind_a_parallel_joint_lies_over_both_angles(tmp_path: Path) -> None:
     t, q1, q2, torque = moving(4)
     top, *more = reported(tmp_path, t, q1, q2, torque + WEIGHT * np.cos(q1 + q2))["effects"]

@@ -41,6 +41,7 @@ def star(camera: Camera) -> np.ndarray:
     return np.array([x - (SIZE_PX - 1) / 2, (SIZE_PX - 1) / 2 - y]) * GUIDE.pixel_arcsec
 
 
+@pytest.mark.slow
 def test_pulses_bring_the_star_where_it_shall_stand(skies: AlpacaLive) -> None:
     telescope, camera = Telescope(skies.address, 0), Camera(skies.address, 1)
     telescope.Connected = camera.Connected = True

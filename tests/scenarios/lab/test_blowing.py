@@ -55,6 +55,7 @@ def numbers(network: Network) -> list[list[float]]:
     return [[network.plant.view[start + k] for k in range(7)] for start in starts]
 
 
+@pytest.mark.slow
 def test_P13_the_dome_lets_in_what_its_slit_shows_of_the_wind(tmp_path: Path) -> None:
     network = built(tmp_path)
     goto, shutter, _ = arguments_of(DOME)

@@ -110,6 +110,7 @@ def test_distances_pulses_and_directions_agree_as_in_a_log_of_phd2(guided: runne
 
 
 @pytest.mark.skipif(compiled(), reason="snapshots are taken of the plain source")
+@pytest.mark.slow
 def test_a_snapshot_in_the_middle_goes_on_to_the_same_log(tmp_path: Path) -> None:
     order = Order(60_000_000_000, tmp_path / "a.snapshot")
     one = go(HEAD + STEPS, tmp_path / "one", snapshot=order)

@@ -80,6 +80,7 @@ def bears_a_tenth(weights: tuple[float, float]) -> bool:
     return all(peak(other, drive, weights) <= 2.0 for drive, other in off)
 
 
+@pytest.mark.slow
 def test_they_leave_the_least_of_all_decades_that_bear_a_tenth() -> None:
     chosen = left((POSITION, DISTURBANCE))
     assert bears_a_tenth((POSITION, DISTURBANCE))
