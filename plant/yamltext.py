@@ -93,7 +93,8 @@ def check_yaml(text: str) -> None:
         _check_events(yaml.parse(text, Loader=loader))
     except yaml.MarkedYAMLError as error:
         line = error.problem_mark.line + 1 if error.problem_mark else 1
-        raise TextError(f"is not YAML: {error.problem}", line) from None
+        colon = " (a text with a colon needs quotes)" if "mapping values" in (error.problem or "") else ""
+        raise TextError(f"is not YAML: {error.problem}{colon}", line) from None
     except (yaml.YAMLError, OverflowError, ValueError, RecursionError) as error:
         if isinstance(error, TextError):
             raise

@@ -77,12 +77,15 @@ def megabytes(logs: Sequence[Path]) -> float:
 @click.option(
     "--new", is_flag=True, help="FILE is a log: draft a rig file of it; what was guessed is marked."
 )
-def rig(file: Path, logs: tuple[Path, ...], plot: Path | None, new: bool) -> None:
+@click.option("--rig", "named", type=PATH, help="The rig file, where FILE is the first of the logs.")
+def rig(file: Path, logs: tuple[Path, ...], plot: Path | None, new: bool, named: Path | None) -> None:
     """Show what is understood of a rig FILE and its LOGS, before anything is fitted."""
     need("calibrate")
     from calibration.command import draft, show_rig
     from scenarios.progress import stages
 
+    if named is not None:
+        file, logs = named, (file, *logs)
     if new and (logs or plot is not None):
         raise click.UsageError("--new drafts from one log, and draws nothing")
     files = (file,) if new else logs

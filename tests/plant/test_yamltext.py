@@ -162,3 +162,9 @@ def test_halves_of_characters_are_no_text(character: str, good: bool) -> None:
         return
     with pytest.raises(TextError, match=r"line 1: .* is no character of a text"):
         yamltext._check_scalar(character, 1)
+
+
+def test_a_text_with_a_colon_is_told_to_need_quotes() -> None:
+    with pytest.raises(TextError) as caught:
+        check_yaml("rig: bench: left motor\n")
+    assert caught.value.what.endswith("(a text with a colon needs quotes)") and caught.value.line == 1

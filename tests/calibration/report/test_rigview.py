@@ -5,8 +5,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
 from calibration.report.rigview import show_rig
+from scenarios.cli import cli
 
 RIG = """rig: r
 columns:
@@ -44,3 +46,15 @@ def test_the_power_of_a_log_is_told(tmp_path: Path, seconds: float) -> None:
         if seconds > 100
         else line is None or float(line[1]) > 0.3
     )
+
+
+def test_the_rig_file_may_be_named_as_calibrate_takes_it(tmp_path: Path) -> None:
+    t = np.arange(0.0, 4.0, 0.01)
+    rows = "\n".join(f"{a:.2f},{2 * a:.4f},{np.sin(9 * a):.6f}" for a in t)
+    log, rig = tmp_path / "a.csv", tmp_path / "rig.yaml"
+    log.write_text(f"t,x,u\n{rows}\n", encoding="utf-8")
+    rig.write_text(RIG, encoding="utf-8")
+    plain, named = (
+        CliRunner().invoke(cli, ["rig", *map(str, words)]) for words in ((rig, log), (log, "--rig", rig))
+    )
+    assert (named.exit_code, named.stdout) == (0, plain.stdout) and "force: " in named.stdout
