@@ -31,17 +31,22 @@ def _labels(s: Scene, joint: str) -> list[tuple[str, str]]:
     inertia, square = f"{s.unit} s2/{s.angle_unit}", f"{s.unit} s2/{s.angle_unit}2"
     bent = [f"acceleration_of_{joint}{by}" for by in ("", "_by_its_cos", "_by_own_cos")]
     rates = [f"{word}_{joint}" for word in ("square_of", "product_with", "own_square_of")]
-    bent.append(f"own_acceleration_by_cos_of_{joint}")
+    bent += [f"own_acceleration_by_cos_of_{joint}"] * _free(s)
     return [*((name, inertia) for name in bent), *((name, square) for name in rates)]
 
 
+def _free(s: Scene) -> bool:
+    """Whether the own acceleration may explain something: it is not the response itself."""
+    return s.view.response.channel != "acceleration"
+
+
 def _columns(s: Scene, joint: str) -> Array:
-    """(n_full, 7): accelerations and products of rates of both joints, by the cos and sin of an angle."""
+    """(n_full, 6 or 7): accelerations and products of both joints' rates, by the cos and sin of an angle."""
     v, turn = s.view, s.turn / (2 * np.pi)
     its, own = v.columns[joint], v.x
     rate, mine = v.smoothed(v.rate(its)), v.smoothed(v.rate(own))
-    bent, mine_bent = v.smoothed(v.second(its)), v.smoothed(v.second(own))
+    bent = v.smoothed(v.second(its))
     cos, own_cos = np.cos(its / turn), np.cos(own / turn)
     sin, own_sin = np.sin(its / turn), np.sin(own / turn)
-    inertia = [bent, bent * cos, bent * own_cos, mine_bent * cos]
+    inertia = [bent, bent * cos, bent * own_cos, *[v.smoothed(v.second(own)) * cos] * _free(s)]
     return np.column_stack([*inertia, sin * rate**2, sin * rate * mine, own_sin * rate**2])

@@ -5,6 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from calibration.inputs.declaration import Response
+from calibration.names.coupling import coupling
+from tests.calibration.names.made import drive
 from tests.calibration.test_drives import FORCE, answer
 
 ARM = FORCE.replace("unit: m}", "unit: rad}").replace("unit: N}", "unit: N m}")
@@ -42,6 +45,17 @@ def test_a_coupled_inertia_has_no_name_and_is_told(tmp_path: Path, seed: int) ->
 
 def test_a_joint_that_does_nothing_is_no_effect(tmp_path: Path) -> None:
     assert reported(tmp_path, *moving(3))["effects"] == []
+
+
+@pytest.mark.parametrize(("response", "own"), [("force", 1), ("acceleration", 0)])
+def test_an_acceleration_does_not_explain_itself(response: str, own: int) -> None:
+    t = 0.01 * np.arange(400)
+    s = drive(
+        np.sin(t), response=Response(response, "N"), unit="rad", columns={"joint": 0.001 * np.cos(3 * t)}
+    )
+    labels = [label for label, _ in coupling(s)[1].labels]
+    assert labels.count("own_acceleration_by_cos_of_joint") == own and len(labels) == 6 + own
+    assert coupling(s)[1].columns.shape == (400, 6 + own)
 
 
 @pytest.mark.slow
