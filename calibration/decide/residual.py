@@ -13,11 +13,19 @@ from calibration.balances.pickup import TOP, pick_up
 from calibration.balances.view import View
 from calibration.decide import thresholds as limits
 from calibration.decide.parameters import finding_of
-from calibration.decide.rules import EXPECTED, clear, displaced, larger_than_the_response, leave_out
+from calibration.decide.rules import (
+    EXPECTED,
+    clear,
+    displaced,
+    larger_than_the_response,
+    leave_out,
+    within_own_errors,
+)
 from calibration.decide.select import select
 from calibration.decide.selection import Selection
 from calibration.finding import UNKNOWN, Finding, Parameter
 from calibration.names import NAMES
+from calibration.names.name import OWN_ERRORS
 from calibration.names.scene import Scene
 from calibration.names.unknown import domains, smooth_functions
 from calibration.statistics.tails import rms
@@ -111,7 +119,10 @@ def _where(s: Selection, scene: Scene, rows: Mask, found: Left) -> Left:
         return replace(found, domain="time", where=ALONE, share=alone)
     if most <= limits.LEAST_SHARE:
         return found
-    return replace(found, domain=place.domain, where=f"over {place.words}{how}", share=most)
+    # what the declared terms' own errors leave over a place is no effect
+    own = scene.force and np.sqrt(most) * np.std(e[rows]) < OWN_ERRORS * np.std((p.y - e)[rows])
+    where = f"over {place.words}{how}"
+    return replace(found, domain=None if own else place.domain, where=where, share=most)
 
 
 def lives_in(s: Selection, places: Sequence[Place], stacked: int = 1) -> tuple[str | None, float, str]:
@@ -233,6 +244,7 @@ def beyond_names(s: Selection, scene: Scene) -> tuple[Selection, Selection, list
         while more.chosen and larger_than_the_response(more, 0):
             offered = [c for c in offered if c.key != more.candidates[0].key]
             more = select(beside_names, offered, most=1, before=s.looked_at)
+        more = leave_out(more, within_own_errors)
         s.refused += more.refused
         # what is little is no function of anything, unless most of it goes with that
         if not more.chosen or (scene.force and little and not clear(more)):

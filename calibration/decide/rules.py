@@ -22,6 +22,7 @@ from calibration.decide.selection import Selection
 from calibration.finding import UNKNOWN
 from calibration.names import NAMES
 from calibration.names.friction_asymmetry import COULOMB
+from calibration.names.name import OWN_ERRORS
 from calibration.names.structural_mode import rings
 from calibration.statistics.regression import under
 from calibration.statistics.tails import rms
@@ -143,6 +144,21 @@ def within_bounds(resolved: float) -> Rule:
         return "no damping of a resonance" if "damping" in told and not rings(told["damping"]) else ""
 
     return each(why)
+
+
+@each
+def within_own_errors(s: Selection, k: int) -> str:
+    """A function without a name of a force that takes no more than the declared terms' own errors leave.
+
+    Only where much more than the floor is left: what goes down to the floor is no such error.
+    """
+    p, rows = s.problem, s.problem.train
+    if p.channel != "T" or s.candidates[k].name != UNKNOWN:
+        return ""
+    taken = _left(s.without(k)) - _left(s)
+    small = taken < (OWN_ERRORS * np.std(p.y[rows] - s.before.residual[rows])) ** 2
+    much = 0 < limits.STILL_MISSING * p.floor < s.held.after
+    return f"less than {100 * OWN_ERRORS:.0f} % of what the declared terms carry" if small and much else ""
 
 
 def cancelling(s: Selection) -> tuple[int, int] | None:

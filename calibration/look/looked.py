@@ -199,15 +199,14 @@ def unnamed_where_missing(
 ) -> tuple[list[Finding], list[str]]:
     """What stays far above the floor without any name is `unknown`, else a need.
 
-    It is so over its domain; of a force over time, where it is much and hangs on nothing that the log holds.
+    It is so over its domain. What hangs on nothing that the log holds, and not on time either, is a need.
     What is much on the fitted rows, too, is no luck of a log that is too short for something.
     """
     large = [(b, m) for b in balances if (m := b.missing) is not None and m.effect]
     if not effects:
         close = any(r.why.startswith((SHORT, FEW)) for b in balances for r in b.selection.refused)
         sure = [(b, m) for b, m in large if not needs or (b.fitted_times > EFFECT and not close)]
-        over = [(b, m.domain or ("time" if b.key == "T" and b.times > EFFECT else "")) for b, m in sure]
-        effects = [Finding(UNKNOWN, b.key, domain, note=b.still) for b, domain in over if domain]
+        effects = [Finding(UNKNOWN, b.key, m.domain, note=b.still) for b, m in sure if m.domain]
     more = [f"{b.still}: a column of what may drive it, or one quantity changed at a time" for b, _ in large]
     return effects, list(dict.fromkeys([*needs, *more]))
 

@@ -86,7 +86,9 @@ def _search(view: View, problem: Problem) -> tuple[Selection, Scene]:
             break
     assert s is not None
     s = one_line(s, scene)
-    s = rules.signed(rules.leave_out(s, rules.within_bounds(view.resolved), rules.cancelled))
+    s = rules.signed(
+        rules.leave_out(s, rules.within_bounds(view.resolved), rules.cancelled, rules.within_own_errors)
+    )
     # again: what was left out moves the sizes of the others
     s = rules.signed(rules.leave_out(s, rules.remainder, rules.worth_little))
     return rules.leave_out(s, rules.feeds_energy, rules.harmful, rules.below_floor, rules.of_the_steps), scene

@@ -20,7 +20,18 @@ from calibration.names.lines import (
     on_clock,
     spectral_lines,
 )
-from calibration.names.name import SEARCHED_WORTH, Array, Candidate, Facts, Finding, Made, Name, tried, value
+from calibration.names.name import (
+    OWN_ERRORS,
+    SEARCHED_WORTH,
+    Array,
+    Candidate,
+    Facts,
+    Finding,
+    Made,
+    Name,
+    tried,
+    value,
+)
 from calibration.names.scene import FORCE, SPEED, VOLTS, Scene
 from calibration.names.structural_mode import NAME as MODE
 from calibration.statistics.orders import Wanted, standing_out
@@ -42,9 +53,6 @@ EDGE_CELLS = 0.25  # likewise of a square, which rows between its edges do not t
 PHASES = 17
 NEIGHBOURS = 3  # multiples of a repeated motion on either side, that one is compared with. ASSUMPTION
 ALONE = 10.0  # times their power, from where on it stands alone. ASSUMPTION: a motion's fall off slowly
-# part of what the declared terms carry at a frequency, that their own errors leave there. ASSUMPTION:
-# neither an amplifier nor a sensor is linear to better
-OWN_ERRORS = 0.05
 SHAKEN = 0.01  # part of the motion's rms, below which nobody commanded such a wave. ASSUMPTION
 FEW = 4  # files: with more, every file's own phase costs too many columns for more than a sine. ASSUMPTION
 

@@ -21,6 +21,9 @@ from plant.effects import REGISTRY
 __all__ = ["FORCE", "FULL_RATES", "MOTOR", "RATES", "SENSORS", "SPEED", "VOLTS", "Array", "Candidate"]
 __all__ += ["Facts", "Finding", "Made", "Scene", "as_found", "value"]
 
+# part of what the declared terms carry, that their own errors leave: neither an amplifier nor a sensor is
+# linear to better. ASSUMPTION
+OWN_ERRORS = 0.05
 WORTH = 0.01  # share of the final held-out mean square, that leaving an effect out must add. ASSUMPTION
 # the same share of one whose frequency or order was looked for among hundreds. ASSUMPTION
 SEARCHED_WORTH = 0.04

@@ -63,6 +63,9 @@ def test_a_large_residual_without_a_name_is_unknown_or_a_need(quiet: Selection) 
     assert unnamed_where_missing([], ["a longer log"], somewhere)[0] == []
     named = [Finding("brake_drag", "T", "time")]
     assert unnamed_where_missing(named, [], somewhere)[0] == named
+    nowhere = [replace(balance(quiet), missing=missing(90.0, None))]  # of nothing that a log may hold
+    effects, needs = unnamed_where_missing([], [], nowhere)
+    assert effects == [] and needs[0].startswith("something is still missing in ")
     small = [replace(balance(quiet), missing=missing(3.0, "time", effect=False))]
     assert unnamed_where_missing([], [], small) == ([], [])
 
