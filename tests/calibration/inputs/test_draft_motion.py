@@ -26,7 +26,7 @@ OTHER = np.sin(2 * np.pi * 3 * K / 500)  # is not like it at all
 
 
 def drafted(period_s: float = 1.0, **left: Any) -> _Draft:
-    columns: dict[str | int, Any] = {**left}
+    columns: dict[str | int, Any] = {str(c): x for c, x in left.items()}
     return _Draft(columns, period_s=period_s)
 
 

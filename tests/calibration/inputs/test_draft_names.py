@@ -16,14 +16,14 @@ WAVE = np.sin(2 * np.pi * K / 100)
 
 
 def named(**columns: Any) -> _Draft:
-    left: dict[str | int, Any] = {**columns}
+    left: dict[str | int, Any] = {str(c): x for c, x in columns.items()}
     d = _Draft(left)
     _by_name(d)
     return d
 
 
 def clocked(stamp: Any = None, **columns: Any) -> _Draft:
-    left: dict[str | int, Any] = {**columns}
+    left: dict[str | int, Any] = {str(c): x for c, x in columns.items()}
     d = _Draft({**left})
     _clock(d, Loose(left, stamp))
     return d
