@@ -21,7 +21,8 @@ def problem(y: np.ndarray, held: int = 0, **more: Any) -> Problem:
     n = len(y)
     given: dict[str, Any] = {
         "channel": "T", "unit": "N m", "y": y, "base": np.zeros((n, 0)), "base_labels": [],
-        "t": PERIOD_S * np.arange(n), "run": np.zeros(n, dtype=np.int64), "session": np.zeros(n, dtype=np.int64),
+        "t": PERIOD_S * np.arange(n), "run": np.zeros(n, dtype=np.int64),
+        "session": np.zeros(n, dtype=np.int64),
         "valid": np.ones(n, dtype=bool), "held": np.arange(n) >= n - held, "period_s": PERIOD_S,
     }  # fmt: skip
     return Problem(**(given | more))
@@ -35,9 +36,15 @@ def fit(residual: np.ndarray, *beta: float) -> Fit:
 def selection(p: Problem, *chosen: Candidate, **more: Any) -> Selection:
     """Every effect with the coefficient 2; before, y is left, and after it nothing."""
     after = fit(np.zeros(len(p.y)), *[2.0] * sum(c.width for c in chosen))
-    none = dict.fromkeys(("wald", "bayes", "gain"), 0.0) | {"blocks": 1.0, "effect": 1.0}
+    none: dict[str, Any] = dict.fromkeys(("wald", "bayes", "gain"), 0.0) | {"blocks": 1.0, "effect": 1.0}
     made = [Contender(candidate=c, fit=after, at=slice(0, 1), **none) for c in chosen]
-    given = {"before": fit(p.y), "after": after, "held": HeldOut(), "chosen": made, "scores": NO_SCORES} | more
+    given: dict[str, Any] = {
+        "before": fit(p.y),
+        "after": after,
+        "held": HeldOut(),
+        "chosen": made,
+        "scores": NO_SCORES,
+    } | more
     return Selection(problem=p, **given)
 
 

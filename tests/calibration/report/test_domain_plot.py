@@ -32,7 +32,10 @@ def test_a_figure_is_a_png_of_its_size_and_is_closed() -> None:
 
 
 def test_a_figure_with_nothing_says_why(figures: list[Any]) -> None:
-    assert plots.nothing_to_draw("torque", "no rows") == "data:image/png;base64," + base64.b64encode(b"figure").decode()
+    assert (
+        plots.nothing_to_draw("torque", "no rows")
+        == "data:image/png;base64," + base64.b64encode(b"figure").decode()
+    )
     (ax,) = figures[0].axes
     assert ax.get_title(loc="left") == "torque" and ax.texts[0].get_text() == "no rows"
     assert ax.get_legend() is None and not ax.axison

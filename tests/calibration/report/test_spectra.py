@@ -58,7 +58,9 @@ def test_without_parts_a_hundred_orders_are_drawn() -> None:
     assert len(still[0]) == len(still[1]) == 0
 
 
-def periods(e: np.ndarray, run: np.ndarray, turns: np.ndarray, held: int = 0) -> tuple[np.ndarray, np.ndarray]:
+def periods(
+    e: np.ndarray, run: np.ndarray, turns: np.ndarray, held: int = 0
+) -> tuple[np.ndarray, np.ndarray]:
     p = problem(e, held, run=run)
     return _over_periods(selection(p), Spectrum(turns=turns, stages={}, label="", periods=True), e)
 
