@@ -86,7 +86,8 @@ def _of_text(h: Heading, fields: dict[str, Any]) -> Loose:
         found.stamp = column if form else found.stamp
     if refused is not None and found.columns.keys() <= {found.stamp}:
         raise refused
-    if signals and not fields and len(found.columns) == 2:
+    named = all(isinstance(c, str) for c in found.columns)
+    if signals and not fields and named and len(found.columns) == 2:
         return _of_long(h, found, signals, sorted({row[h.fields.index(signals)] for row in some}))
     return found
 

@@ -126,7 +126,7 @@ def _places(t: Array, period_s: float) -> Array:
     pairs = step[1:] + step[:-1]
     apart = np.minimum(np.append(pairs, np.inf), np.insert(pairs, 0, np.inf))
     one = (step < limits.STAMP_GAP) | (apart < 1.0 + limits.STAMP_GAP)
-    return np.concatenate([[0.0], np.cumsum(np.where(one, 1.0, np.maximum(np.rint(step), 1.0)))])
+    return np.concatenate([[0.0], np.cumsum(np.where(one, 1.0, np.rint(step)))])
 
 
 def _digits(t: Array) -> float:
@@ -147,7 +147,7 @@ def _quick(place: Array, x: Array) -> Mask:
     """Rows between two neighbours, quicker than most: there the sensor's own steps matter least."""
     one, speed = np.diff(place) == 1, np.abs(np.gradient(x))
     whole = np.concatenate([[False], one[:-1] & one[1:], [False]])
-    whole &= np.isfinite(speed) & np.isfinite(_bends(place, x))
+    whole &= np.isfinite(_bends(place, x))
     least = np.quantile(speed[whole], limits.QUICK_SHARE) if whole.any() else np.inf
     return np.asarray(whole & (speed > least))
 

@@ -82,7 +82,8 @@ def _run(path: Path, rig: Rig, raw: dict[str, Array], name: str, logged: dict[st
             wraps[channel], values = count_wraps(values, counted_up, where.wrap), counted_up
         values = values * of_file(path, where, label) * where.scale + where.offset
         if where.steps or where.integrated:
-            values = over_time(where, columns.get("t", _even(rig, rows)), values)
+            clock_s = columns.get("t", _even(rig, rows))
+            values = over_time(where, clock_s - clock_s[0], values)
         columns["t" if channel == "time" else channel] = values
     columns.setdefault("t", _even(rig, rows))
     t = columns["t"]

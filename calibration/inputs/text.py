@@ -136,11 +136,17 @@ def heading(path: Path, text: str, names: tuple[str, ...] = (), delimiter: str |
     if names or all(f and plain(f) is not None for f in fields):
         said = _commented(lines[:skip], mark, len(fields))
         fields, first = list(names) or said or [str(k) for k in range(len(fields))], skip
-    if first >= len(lines):
+    first = next((k for k in range(first, len(lines)) if not _is_blank(lines[k], mark)), len(lines))
+    if first == len(lines):
         raise CalibrationInputError(path, "has no data rows", first)
     if len(fields) != (width := len(lines[first].split(mark))):
         raise CalibrationInputError(path, f"{width} fields, {len(fields)} names", first + 1)
     return Heading(path, lines, fields, first, mark, skip - 1 if fields == said else skip)
+
+
+def _is_blank(line: str, mark: str) -> bool:
+    """Whether nothing is in a line; a row of empty fields is a row."""
+    return not line.strip(BLANK.replace(mark, ""))
 
 
 def _mark(line: str) -> str:
@@ -229,7 +235,7 @@ def _slowly(
     lines = [row.rstrip("\n") for row in io.StringIO(body, newline=None)]  # no other signs end a line
     last, rows = first_line + len(lines) - 1, []
     for line, text in enumerate(lines, first_line):
-        if not text.strip(BLANK.replace(mark, "")):  # a row of empty fields is a row
+        if _is_blank(text, mark):
             continue
         fields = text.split(mark)
         if len(fields) != len(names):

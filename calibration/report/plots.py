@@ -16,6 +16,8 @@ BINS = 80  # bins over a domain. ASSUMPTION
 BINS_OF_A_PULSE = 8  # bins over the width of a narrow pulse. ASSUMPTION: its shape shows
 FEWEST_DRAWN = 20  # rows, fewest, over a domain. ASSUMPTION
 FEWEST_OF_A_TRACE = 3  # rows, fewest, of a trace: a line with a bend. ASSUMPTION
+# times the highest order drawn, to which a spectrum is taken: its bins then flatten a line by 2 %. arithmetic
+FINER = 4.0
 MOST_MARKED = 12  # places of gaps that are marked in a trace; more would hide it. ASSUMPTION
 BLUE, RED, GREY, GREEN = "#1f5fa8", "#c0392b", "#8a8f98", "#2e8b57"
 
@@ -125,14 +127,17 @@ def spectrum_plot(selection: Selection, spectrum: Spectrum, title: str) -> str:
 def _over_orders(selection: Selection, spectrum: Spectrum, e: Array) -> tuple[Array, Array]:
     """Orders and amplitudes of the fitted rows, the largest of each cell of a logarithmic axis."""
     rows = selection.problem.train
-    turns, fitted = spectrum.turns, max(rows.sum(), 1)
+    turns, fitted = spectrum.turns[rows], int(rows.sum())
+    if fitted < FEWEST_DRAWN:
+        return np.zeros(0), np.zeros(0)
     found = [c.candidate.order for c in selection.chosen if c.candidate.kind == "line" and c.candidate.order]
     top = max([*spectrum.stages.values(), *found], default=0.0) * 1.3 or 100.0
-    top = min(top, 0.5 * rows.sum() / (float(np.ptp(turns)) or 1.0))
-    orders, power = order_spectrum(np.where(rows, e, 0.0), turns, rows.astype(float), top)
+    top = min(top, 0.5 * fitted / (float(np.ptp(turns)) or 1.0))
+    orders, power = order_spectrum(e[rows], turns, np.ones(fitted), FINER * top)
     if len(orders) == 0:
         return orders, power
-    amplitude = 2 * np.sqrt(power * np.mean(e[rows] ** 2) * rows.sum()) / fitted
+    orders, power = orders[orders <= top], power[orders <= top]
+    amplitude = 2 * np.sqrt(power * np.mean(e[rows] ** 2) / fitted)
     edges = np.unique(np.geomspace(max(orders[0], 1e-9), orders[-1], 1500))
     cells = np.split(np.arange(len(orders)), np.searchsorted(orders, edges[1:]))
     best = np.array([cell[np.argmax(amplitude[cell])] for cell in cells if len(cell)])

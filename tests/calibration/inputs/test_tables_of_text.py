@@ -1,0 +1,214 @@
+"""Where a table of text begins, what its columns are called, and every complaint word by word."""
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from calibration.errors import CalibrationInputError
+from calibration.inputs.text import (
+    Heading,
+    Long,
+    _slowly,
+    check_file,
+    heading,
+    load_text,
+    read_long,
+    read_numbers,
+)
+
+PATH = Path("x.csv")
+NAN = float("nan")
+
+
+def at(text: str, *names: str, delimiter: str | None = None) -> tuple[list[str], int, str, int]:
+    h = heading(PATH, text, names, delimiter)
+    return h.fields, h.first, h.mark, h.at
+
+
+def refused(call: object, *more: object) -> str:
+    with pytest.raises(CalibrationInputError) as caught:
+        call(*more)  # type: ignore[operator]
+    return str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("t,q\n1,2\n", (["t", "q"], 1, ",", 0)),
+        ('"t";"q"\n1;2\n', (["t", "q"], 1, ";", 0)),
+        ("t\tq\n1\t2\n", (["t", "q"], 1, "\t", 0)),
+        ("t;q,x\n1;2,5\n", (["t", "q,x"], 1, ";", 0)),
+        ("  t   q\n 1  2\n", (["t", "q"], 1, " ", 0)),
+        ("1,2\n3,4\n", (["0", "1"], 0, ",", 0)),
+        ("1,2\n", (["0", "1"], 0, ",", 0)),
+        ("1,\n3,4\n", (["1", ""], 1, ",", 0)),  # no row of numbers
+        ("% a remark\n\n# t, q\n1,2\n", (["t", "q"], 3, ",", 2)),
+        ("# t, q, x\n1,2\n", (["0", "1"], 1, ",", 1)),
+        ("# t, t\n1,2\n", (["0", "1"], 1, ",", 1)),
+        ("# t, the place of it\n1,2\n", (["0", "1"], 1, ",", 1)),
+        ("# t, q deg\n1,2\n", (["t", "q deg"], 1, ",", 0)),
+        ("# 3, q\n1,2\n", (["0", "1"], 1, ",", 1)),
+        ("# t, q\n# 3 runs\n1,2\n", (["0", "1"], 2, ",", 2)),
+        ("# t\n1\n2\n", (["0"], 1, " ", 1)),
+        ("Operator: N. N.\nt,q\n1,2\n3,4\n", (["t", "q"], 2, ",", 1)),
+        ("a, b, c, d\nt,q\n1,2\n3,4\n5", (["t", "q"], 2, ",", 1)),  # the last row may be cut off
+        ("a remark\nanother\n\nt,q\n\n1,2\n3,4\n", (["t", "q"], 5, ",", 3)),
+        ("a remark\n1,2\n3,4\n", None),
+    ],
+)
+def test_a_table_begins_where_its_names_do(text: str, found: tuple[list[str], int, str, int] | None) -> None:
+    if found is None:
+        assert refused(heading, PATH, text) == "x.csv:2: 1 fields, 2 names"
+    else:
+        assert at(text) == found
+
+
+def test_names_and_a_delimiter_that_are_given_come_first() -> None:
+    assert at("1,2\n3,4\n", "a", "b") == (["a", "b"], 0, ",", 0)
+    assert at("t,q\n1,2\n", "a", "b")[:2] == (["a", "b"], 0)
+    assert at("1,5;2\n", "a", "b", delimiter=";")[:3] == (["a", "b"], 0, ";")
+    assert refused(heading, PATH, "1,2\n", ("a",)) == "x.csv:1: 2 fields, 1 names"
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("", "x.csv: has no data rows"),
+        ("# a\n\n% b\n", "x.csv:3: has no data rows"),
+        ("t,q\n", "x.csv:1: has no data rows"),
+        ("t,q\n1,2,3\n", "x.csv:2: 3 fields, 2 names"),
+        (
+            ",".join("abc" + str(k) for k in range(4097)) + "\n",
+            "x.csv:1: 4097 columns, at most 4096: is it transposed?",
+        ),
+    ],
+)
+def test_a_text_without_rows_is_no_table(text: str, says: str) -> None:
+    assert refused(heading, PATH, text) == says
+
+
+def test_as_many_columns_as_there_may_be_are_read() -> None:
+    names = [f"c{k}" for k in range(4096)]
+    assert heading(PATH, ",".join(names) + "\n" + ",".join("1" * 4096) + "\n").fields == names
+
+
+TABLE = heading(PATH, "t,q,q,u\n0,1,2,3\n1,4,,6\n")
+
+
+@pytest.mark.parametrize(
+    ("column", "says"),
+    [
+        (4, "x.csv:1: column '4': there are 4 columns, counted from 0"),
+        (-1, "x.csv:1: column '-1': there are 4 columns, counted from 0"),
+        ("q", "x.csv:1: column 'q': stands more than once (at 1, 2, from 0): give the place in its stead"),
+        ("v", "x.csv:1: column 'v': no such column; the file has t, q, q, u"),
+    ],
+)
+def test_a_column_that_is_not_there_says_which_are(column: str | int, says: str) -> None:
+    assert refused(TABLE.place, column) == says
+    bare = heading(PATH, "# x\n1,2\n")
+    assert refused(bare.place, "v") == (
+        "x.csv:2: column 'v': no such column; the file has no header row and 2 columns, named 0, 1 …"
+    )
+    assert refused(bare.place, "v", True).endswith("the file has 0, 1")
+
+
+def test_columns_are_read_by_name_or_place_and_errors_by_the_name_that_was_used() -> None:
+    assert [TABLE.place(c) for c in ("t", 0, 3, "u")] == [0, 0, 3, 3]
+    got = TABLE.read(["u", 2])
+    assert got["u"].tolist() == [3.0, 6.0] and got["2"][0] == 2.0 and np.isnan(got["2"][1])
+    bad = heading(PATH, "t,q\n0,1\n1,x\n")
+    assert refused(bad.read, ["q"]) == "x.csv:3: column 'q': 'x' is not a number"
+    assert refused(bad.read, [1]) == "x.csv:3: column '1': 'x' is not a number"
+    assert bad.read(["t"])["t"].tolist() == [0.0, 1.0]
+
+
+def test_stamps_of_two_columns_are_seconds() -> None:
+    table = heading(PATH, "day,clock,q\n2024-05-01,00:00:01,5\n2024-05-01,00:00:03,6\n")
+    got = table.read(["day", "q"], {"day": ("iso", "clock")})
+    assert np.diff(got["day"]).tolist() == [2.0] and got["q"].tolist() == [5.0, 6.0]
+    alone = heading(PATH, "at,q\n2024-05-01,5\n2024-05-02,6\n").read(["at"], {"at": ("iso", "")})
+    assert np.diff(alone["at"]).tolist() == [86400.0]
+    wrong = heading(PATH, "at,q\nnow,5\n")
+    assert refused(wrong.read, ["at"], {"at": ("iso", "")}) == (
+        "x.csv:2: column 'at': 'now' is no stamp of format 'iso'"
+    )
+
+
+def test_json_is_a_table_between_tabs() -> None:
+    h = heading(PATH, '{"t": 0, "q": "1,5"}\n{"t": 1, "q": "2"}\n')
+    assert (h.fields, h.mark, h.first) == (["t", "q"], "\t", 1)
+
+
+LONG = Long("signal", "t", "value", 2)
+
+
+def test_a_long_table_has_a_column_for_every_signal() -> None:
+    rows = [f"{t / 10},{name},{value}" for t in range(6) for name, value in (("q", t), ("u", 2 * t))]
+    table = heading(PATH, "t,signal,value\n\n" + "\n".join(rows) + "\n\n")
+    got, logged = read_long(table, ["u", "t", "q"], LONG, {})
+    assert set(got) == {"t", "u", "q"} and set(logged) == {"u", "q"}
+    assert got["t"] == pytest.approx([0.0, 0.1, 0.2, 0.3, 0.4, 0.5])
+    assert got["u"].tolist() == logged["u"].tolist() == [0.0, 2.0, 4.0, 6.0, 8.0, 10.0]
+    cut = heading(PATH, "t,signal,value\n" + "\n".join(rows) + "\n0.6,q\n")
+    assert read_long(cut, ["u", "q"], LONG, {})[0]["q"].tolist() == [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]
+    assert refused(read_long, heading(PATH, "t,name,value\n0,q,1\n"), ["q"], LONG, {}) == (
+        "x.csv:1: column 'signal': no such column; the file has t, name, value"
+    )
+
+
+@pytest.mark.parametrize("read", [read_numbers, None])
+@pytest.mark.parametrize(
+    ("body", "mark", "says"),
+    [
+        ("1,2\n3,x\n", ",", "x.csv:8: column 'b': 'x' is not a number"),
+        ("1;2\n3;4,5\n", ";", "x.csv:8: column 'b': '4,5' is not a number: decimal commas? write points"),
+        ("1;2\n3;4,5,6\n", ";", "x.csv:8: column 'b': '4,5,6' is not a number"),
+        ("1,2\n3,2024-05-01\n", ",", "x.csv:8: column 'b': '2024-05-01' is not a number: a "
+                                     "stamp? the column time "
+         "takes 'format: iso'"),
+        ("1,2\n3\n5,6\n", ",", "x.csv:8: 1 fields, the header row has 2"),
+        ("1,2\n3,4,5\n5,6\n", ",", "x.csv:8: 3 fields, the header row has 2: decimal commas? write points"),
+        ("1;2\n3;4;5\n5;6\n", ";", "x.csv:8: 3 fields, the header row has 2"),
+        ("1;2\n3;4;5;6\n5;6\n", ";", "x.csv:8: 4 fields, the header row has 2: decimal commas? write points"),
+        ("1,2\n# x\n5,6\n", ",", "x.csv:8: 1 fields, the header row has 2: a second header? "
+                                 "one file holds one run"),
+    ],
+)  # fmt: skip
+def test_a_wrong_field_names_its_place(read: object, body: str, mark: str, says: str) -> None:
+    if read is None:
+        assert refused(_slowly, PATH, body, ["a", "b"], 7, mark, [0, 1]) == says
+    else:
+        assert refused(read, PATH, body, ["a", "b"], 7, mark) == says
+
+
+def test_the_careful_way_takes_empty_fields_blank_lines_and_a_row_half_written() -> None:
+    found = _slowly(PATH, "1,\n\n \t\n nan,-inf\n7", ["a", "b"], 2, ",", [0, 1])
+    assert np.array_equal(found[0], [1.0, NAN], equal_nan=True)
+    assert np.array_equal(found[1], [NAN, -np.inf], equal_nan=True)
+    tabs = _slowly(PATH, "1\t2\n\t\n", ["a", "b"], 2, "\t", [1])
+    assert set(tabs) == {1} and np.array_equal(tabs[1], [2.0, NAN], equal_nan=True)
+    assert refused(read_numbers, PATH, "\ufeff1,2\n", ["a", "b"], 2) == (
+        "x.csv:2: column 'a': '\ufeff1' is not a number"
+    )
+    assert _slowly(PATH, "7", ["a", "b"], 2, ",", [0])[0].shape == (0,)
+
+
+def test_only_a_regular_file_is_read(tmp_path: Path) -> None:
+    check_file(tmp_path / "none")
+    (tmp_path / "a").write_text("x")
+    check_file(tmp_path / "a")
+    assert refused(check_file, tmp_path) == f"{tmp_path}: cannot be read (Is a directory)"
+    os.mkfifo(tmp_path / "pipe")
+    assert refused(check_file, tmp_path / "pipe") == f"{tmp_path / 'pipe'}: cannot be read (no regular file)"
+    assert (
+        refused(load_text, tmp_path / "none")
+        == f"{tmp_path / 'none'}: cannot be read (No such file or directory)"
+    )
+
+
+def test_a_heading_knows_where_its_names_are() -> None:
+    h = Heading(PATH, ["1 2"], ["0", "1"], 0, " ", 0)
+    assert h.read([1, 0])["1"].tolist() == [2.0]
