@@ -41,9 +41,9 @@ def judge(
 def asked(
     link: Link, board: Board, check: str, subject: str, data: bytes, results: Sequence[int]
 ) -> CheckResult:
-    """Send any bytes as a command and judge the answer, which says opcode 0 to what has no byte 1."""
+    """Send any bytes as a command and judge the answer."""
     start = link.now()
-    replies = link.ask_raw(board.device, data, data[1] if len(data) > 1 else 0)
+    replies = link.ask_raw(board.device, data)
     return judge(check, subject, replies, board.device, results, link.now() - start)
 
 
