@@ -94,7 +94,7 @@ def check_answers(link: Link, board: Board) -> Iterator[CheckResult]:
 
 
 def _parameters(link: Link, board: Board) -> Iterator[CheckResult]:
-    """Read a parameter and write the same value back."""
+    """Read a parameter and write the same value back; one that was not read is left alone."""
     name, device = board.name, board.device
     kind = kind_of(board.model)
     has_parameters = board.family == "AXIS" or (kind is not None and bool(kind.parameters))
@@ -103,6 +103,7 @@ def _parameters(link: Link, board: Board) -> Iterator[CheckResult]:
     replies = link.ask(device, Opcode.GET_PARAMETER, _PARAMETER)
     subject = f"{name} GET_PARAMETER {_PARAMETER}"
     yield judge("command", subject, replies, device, results, link.now() - start)
-    value = replies[0].value if replies else 0
-    data = pack_command(device, Opcode.SET_PARAMETER, _PARAMETER, value)
+    if not replies:
+        return
+    data = pack_command(device, Opcode.SET_PARAMETER, _PARAMETER, replies[0].value)
     yield asked(link, board, "command", f"{name} SET_PARAMETER {_PARAMETER}", data, results)

@@ -30,9 +30,9 @@ def silence(_message: can.Message) -> Coming:
 class ScriptedBus(can.BusABC):
     """answer: what comes of a frame that the tester sends."""
 
-    def __init__(self, answer: Callable[[can.Message], Coming] = silence) -> None:
+    def __init__(self, answer: Callable[[can.Message], Coming] = silence, now_s: float = 0.0) -> None:
         self.answer = answer
-        self.now_s = 0.0
+        self.now_s = now_s
         self.sent: list[can.Message] = []
         self.sent_s: list[float] = []
         self._coming: list[tuple[float, int, can.Message]] = []

@@ -25,10 +25,8 @@ from tests.conformance.scripted import (
     told,
 )  # fmt: skip
 
-I32 = 2**31 - 1
+I32, TURN, SUPPLY = 2**31 - 1, 2**29 - 1, 3000 * 256
 FASTEST = 318_557_389  # 3.1 deg/s: 11160 arcsec/s x 112896000 / 1296000 counts / 200 ticks x 65536
-TURN = 2**29 - 1
-SUPPLY = 3000 * 256  # PWM steps in Q8
 AXIS_LIMITS = {
     1: (10, 25), 2: (0, 1048576), 3: (0, 1048576), 4: (0, TURN), 5: (0, TURN),
     6: (1, 10_276_044),  # 7200 arcsec/s are 205520896, in 20 ticks of 5 ms
@@ -68,8 +66,7 @@ def checked(verdict: Callable[[bytes], Verdict | None]) -> CheckResult:
 
 
 def test_a_parameter_is_set_to_its_limits_and_beyond_and_put_back() -> None:
-    bus = ScriptedBus(board(0x51, store(), after_s=0.25))
-    bus.now_s = 8.0
+    bus = ScriptedBus(board(0x51, store(), after_s=0.25), now_s=8.0)
     (result,) = _parameter(link_on(bus), DISPLAY, 7, 1, 10)
     expected = "1..10 taken, beyond refused, 4 put back"
     assert told([result]) == [f"ok limits: DISPLAY parameter 7: {expected} | so"]
@@ -121,16 +118,15 @@ def test_each_way_of_being_wrong_is_told(call: int, verdict: Verdict | None, sai
 
 def test_all_that_is_wrong_is_told() -> None:
     result = checked(lambda data: (OK, 7, data[3]))
-    said = "1: then OK parameter 7 value 0; 10: then OK parameter 7 value 0; "
-    assert result.observed == said + "0: OK parameter 7 value 0; 11: OK parameter 7 value 11"
+    said = "1: then {0} 0; 10: then {0} 0; 0: {0} 0; 11: {0} 11".format("OK parameter 7 value")
+    assert result.observed == said
 
 
 @pytest.mark.parametrize(
     ("verdict", "said"), [(None, "no reply"), ((OUTSIDE, 7, 3), "OUT_OF_RANGE parameter 7 value 3")]
 )
 def test_a_parameter_that_cannot_be_read_is_left_alone(verdict: Verdict | None, said: str) -> None:
-    bus = ScriptedBus(board(0x51, lambda _: verdict, after_s=0.9995))
-    bus.now_s = 8.0
+    bus = ScriptedBus(board(0x51, lambda _: verdict, after_s=0.9995), now_s=8.0)
     (result,) = _parameter(link_on(bus, reply_s=1.0), DISPLAY, 7, 1, 10)
     assert told([result]) == [f"error limits: DISPLAY parameter 7: a value | {said}"]
     assert bus.lines() == [GET]
@@ -192,8 +188,7 @@ def test_an_axis_that_does_not_tell_its_limits_is_sent_no_targets() -> None:
 
 
 def test_other_boards_are_asked_at_their_limits_too() -> None:
-    lines = told(check_limits(link_on(ScriptedBus(board(0x51))), DISPLAY))
-    assert lines == [
+    assert told(check_limits(link_on(ScriptedBus(board(0x51))), DISPLAY)) == [
         "error limits: DISPLAY BRIGHTNESS 255: one reply: OUT_OF_RANGE | OK",
         "ok limits: DISPLAY BRIGHTNESS 0: one reply: OK | OK",
         "ok limits: DISPLAY BRIGHTNESS 100: one reply: OK | OK",
