@@ -13,14 +13,15 @@ import can
 from bus.conformance.boards import Board
 from bus.conformance.link import Link
 from bus.conformance.result import CheckResult, judged
-from bus.protocol import COMMAND_BASE, REPLY_BASE, Opcode, pack_command
+from bus.protocol import COMMAND_BASE, MEASUREMENT_BASE, REPLY_BASE, SUMMARY_BASE, Opcode, pack_command
 
-_START, _STOP, _PREPARE, _RESET = 0x01, 0x02, 0x80, 0x82
-_STATES: Final = {_START: 5, _STOP: 4, _PREPARE: 127}
+_START, _STOP, _RESET = 0x01, 0x02, 0x82
+_STATES: Final = {_START: 5, _STOP: 4}
 """NMT commands, and the state a heartbeat says afterwards (table 32, 7.2.8.3.2)."""
 _NMT, _SYNC, _HEARTBEAT, _ASK, _ANSWER = 0x000, 0x080, 0x700, 0x600, 0x580
 _STATUS: Final = 0x380
 """TPDO4, the documented HEARTBEAT: every board has it (docs/reference/canopen.md)."""
+_PDOS: Final = (REPLY_BASE, MEASUREMENT_BASE, SUMMARY_BASE, _STATUS)
 _EVENT: Final = 0xFF
 _STATUS_KIND: Final = (0x1803, 2)
 _SYNCS: Final = 4
@@ -54,9 +55,7 @@ def check_canopen(link: Link, boards: Sequence[Board]) -> Iterator[CheckResult]:
     heard = _heard(link, _BEATS_S)
     for board in boards:
         yield from _heartbeat(link, board, heard[_HEARTBEAT + board.device])
-        silent = not any(heard[base + board.device] for base in (REPLY_BASE, 0x200, 0x300, _STATUS))
-        observed = "none" if silent else "frames"
-        yield judged("pre-operational", board.name, silent, "no PDO", observed)
+        yield _quiet("pre-operational", board, heard)
         yield from _objects(link, board)
     yield from _states(link, boards)
     yield from _synchronous(link, boards)
@@ -120,18 +119,21 @@ def _states(link: Link, boards: Sequence[Board]) -> Iterator[CheckResult]:
             shown = " ".join(sorted(each.hex() for each in said)) or "nothing"
             state = bytes((_STATES[order],))
             yield judged("state", f"{board.name}, NMT {order:02x}", said == {state}, state.hex(), shown)
-            answer = _sdo(link, board.device, b"\x40\x00\x10\x00") if order == _START else None
-            if answer is not None:
-                yield judged(
-                    "server", board.name, answer[:1] == b"\x43", "43 ...", answer.hex(" ") or "nothing"
-                )
-                link.send(COMMAND_BASE + board.device, pack_command(board.device, Opcode.PING))
-                reply = link.frame(REPLY_BASE + board.device, link.settings.reply_s)
-                observed = "none" if reply is None else bytes(reply.data).hex(" ")
-                yield judged("operational", board.name, reply is not None, "REPLY to PING", observed)
-            else:
-                flows = any(heard[base + board.device] for base in (REPLY_BASE, 0x200, 0x300, _STATUS))
-                yield judged("stopped", board.name, not flows, "no PDO", "frames" if flows else "none")
+            if order == _STOP:
+                yield _quiet("stopped", board, heard)
+                continue
+            answer = _sdo(link, board.device, b"\x40\x00\x10\x00")
+            yield judged("server", board.name, answer[:1] == b"\x43", "43 ...", answer.hex(" ") or "nothing")
+            link.send(COMMAND_BASE + board.device, pack_command(board.device, Opcode.PING))
+            reply = link.frame(REPLY_BASE + board.device, link.settings.reply_s)
+            observed = "none" if reply is None else bytes(reply.data).hex(" ")
+            yield judged("operational", board.name, reply is not None, "REPLY to PING", observed)
+
+
+def _quiet(check: str, board: Board, heard: dict[int, list[can.Message]]) -> CheckResult:
+    """Of a state without PDOs."""
+    flows = any(heard[base + board.device] for base in _PDOS)
+    return judged(check, board.name, not flows, "no PDO", "frames" if flows else "none")
 
 
 def _synchronous(link: Link, boards: Sequence[Board]) -> Iterator[CheckResult]:

@@ -41,9 +41,9 @@ def judge(
 def asked(
     link: Link, board: Board, check: str, subject: str, data: bytes, results: Sequence[int]
 ) -> CheckResult:
-    """Send any bytes as a command and judge the answer, which says opcode 0 to what has no byte 1."""
+    """Send any bytes as a command and judge the answer."""
     start = link.now()
-    replies = link.ask_raw(board.device, data, data[1] if len(data) > 1 else 0)
+    replies = link.ask_raw(board.device, data)
     return judge(check, subject, replies, board.device, results, link.now() - start)
 
 
@@ -94,7 +94,7 @@ def check_answers(link: Link, board: Board) -> Iterator[CheckResult]:
 
 
 def _parameters(link: Link, board: Board) -> Iterator[CheckResult]:
-    """Read a parameter and write the same value back."""
+    """Read a parameter and write the same value back; one that was not read is left alone."""
     name, device = board.name, board.device
     kind = kind_of(board.model)
     has_parameters = board.family == "AXIS" or (kind is not None and bool(kind.parameters))
@@ -103,6 +103,7 @@ def _parameters(link: Link, board: Board) -> Iterator[CheckResult]:
     replies = link.ask(device, Opcode.GET_PARAMETER, _PARAMETER)
     subject = f"{name} GET_PARAMETER {_PARAMETER}"
     yield judge("command", subject, replies, device, results, link.now() - start)
-    value = replies[0].value if replies else 0
-    data = pack_command(device, Opcode.SET_PARAMETER, _PARAMETER, value)
+    if not replies:
+        return
+    data = pack_command(device, Opcode.SET_PARAMETER, _PARAMETER, replies[0].value)
     yield asked(link, board, "command", f"{name} SET_PARAMETER {_PARAMETER}", data, results)

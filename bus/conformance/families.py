@@ -17,7 +17,7 @@ class Case(NamedTuple):
     opcode: Opcode
     arguments: tuple[int, ...]
     results: tuple[Result, ...]
-    moves: bool = False
+    moves: bool
 
 
 class Family(NamedTuple):

@@ -110,14 +110,14 @@ class Link:
     def _took(self, device: int, opcode: int) -> None:
         self.took_s.setdefault(device, []).append((self.now() - self._sent_s, opcode))
 
-    def replies(self, device: int, opcode: int | None) -> Answers:
-        """Answers of `device` to `opcode` (None: any): the first within reply_s, then any within quiet_s."""
+    def replies(self, device: int, opcode: int) -> Answers:
+        """Answers of `device` to `opcode`: the first within reply_s, then any within quiet_s."""
         found = Answers()
         end = self.now() + self.settings.reply_s
         while (reply := self.reply(device, end - self.now())) is not None:
-            if opcode is None or reply.opcode == opcode:
+            if reply.opcode == opcode:
                 if not found:
-                    self._took(device, reply.opcode)
+                    self._took(device, opcode)
                 found.append(reply)
                 end = self.now() + self.settings.quiet_s
             else:
@@ -145,10 +145,11 @@ class Link:
 
     def ask(self, device: int, opcode: int, *arguments: int) -> Answers:
         """Send a command of the protocol and collect its answers."""
-        return self.ask_raw(device, pack_command(device, opcode, *arguments), opcode)
+        return self.ask_raw(device, pack_command(device, opcode, *arguments))
 
-    def ask_raw(self, device: int, data: bytes, opcode: int | None) -> Answers:
-        """Send any bytes as a command to `device` and collect the answers."""
+    def ask_raw(self, device: int, data: bytes) -> Answers:
+        """Send any bytes as a command and collect the answers; what has no byte 1 is answered as opcode 0."""
+        opcode = data[1] if len(data) > 1 else 0
         self.send(COMMAND_BASE + device, data)
         found = self.replies(device, opcode)
         if len(data) == FRAME_BYTES and data[0] == device and opcode in _NUMBERED:

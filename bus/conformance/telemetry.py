@@ -65,12 +65,12 @@ def _frame(
     yield result(
         "length", lengths == {documented.length}, f"{documented.length} bytes", f"{sorted(lengths)} bytes"
     )
-    first = {message.data[0] if message.data else -1 for message in heard}
+    first = sorted({bytes(message.data[:1]) for message in heard})
     yield result(
         "device type",
-        first == {board.device},
+        first == [bytes([board.device])],
         f"byte 0 = {board.device:#04x}",
-        ", ".join(f"{b:#04x}" for b in first),
+        ", ".join(f"0x{byte.hex()}" if byte else "none" for byte in first),
     )
     speed = link.settings.speed
     rows = [

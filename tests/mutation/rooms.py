@@ -8,7 +8,7 @@ AIMS = {
 }  # fmt: skip
 """Rooms, the inner ones before those around them, and the share of mutants that is to be killed, per cent."""
 BESIDES = {
-    "bus": ("tests/boards/chips/mcp2515",),
+    "bus": ("tests/boards/chips/mcp2515", "tests/conformance"),
     "calibration/decide": ("tests/calibration",),
     "scenarios": ("tests/doors", "tests/studies"),
     "plant": ("tests/studies/objective/test_observer.py",),
