@@ -61,7 +61,7 @@ class ScriptedBus(can.BusABC):
         return None
 
     def lines(self) -> list[str]:
-        """What was sent: identifier (x: extended, r: remote) and bytes."""
+        """All that was sent: identifier (x: extended, r: remote) and bytes."""
         return [line(message) for message in self.sent]
 
 

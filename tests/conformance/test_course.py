@@ -1,4 +1,4 @@
-"""What a board's own counters tell: uptime, overruns, errors on the bus, state, sequence."""
+"""Counters of a board, and how each is judged: uptime, overruns, errors on the bus, state, sequence."""
 
 from typing import Any
 

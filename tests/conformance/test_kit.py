@@ -20,7 +20,7 @@ ELSEWHERE = judged("health", "DISPLAY", False, "0", "0x4")
 
 
 def config(*words: str) -> Any:
-    """What pytest's own parser makes of a command line."""
+    """A command line as pytest's own parser takes it."""
     parser = pytest.Parser(_ispytest=True)
     kit.pytest_addoption(parser)
     found = parser.parse(list(words))

@@ -23,7 +23,7 @@ from tests.conformance.scripted import (
     declared,
     link_on,
     told,
-)  # fmt: skip
+)
 
 I32, TURN, SUPPLY = 2**31 - 1, 2**29 - 1, 3000 * 256
 FASTEST = 318_557_389  # 3.1 deg/s: 11160 arcsec/s x 112896000 / 1296000 counts / 200 ticks x 65536

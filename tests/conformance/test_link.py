@@ -18,7 +18,7 @@ PING = Reply(DEVICE, Opcode.PING, OK, 0, 0)
 
 
 def instead(message: can.Message, *known: int) -> str:
-    """What is kept of a frame that comes as the answer to a PING."""
+    """Kept of a frame that comes as the answer to a PING."""
     bus = ScriptedBus(lambda _: [(0.25, message)])
     link = link_on(bus)
     link.known = set(known)

@@ -1,4 +1,4 @@
-"""What boards say unasked: which frames are judged, by what, and which nobody has documented."""
+"""Frames that boards send unasked: which are judged, by what, and which nobody has documented."""
 
 from collections.abc import Iterator
 
