@@ -150,10 +150,10 @@ def within_bounds(resolved: float) -> Rule:
 def within_own_errors(s: Selection, k: int) -> str:
     """A function without a name of a force that takes no more than the declared terms' own errors leave.
 
-    Only where much more than the floor is left: what goes down to the floor is no such error.
+    Only where nothing has a name, and much more than the floor is left: no such error goes down to it.
     """
     p, rows = s.problem, s.problem.train
-    if p.channel != "T" or s.candidates[k].name != UNKNOWN:
+    if p.channel != "T" or any(c.name != UNKNOWN for c in s.candidates):
         return ""
     taken = _left(s.without(k)) - _left(s)
     small = taken < (OWN_ERRORS * np.std(p.y[rows] - s.before.residual[rows])) ** 2
