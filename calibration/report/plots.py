@@ -134,9 +134,9 @@ def _over_orders(selection: Selection, spectrum: Spectrum, e: Array) -> tuple[Ar
     top = max([*spectrum.stages.values(), *found], default=0.0) * 1.3 or 100.0
     top = min(top, 0.5 * fitted / (float(np.ptp(turns)) or 1.0))
     orders, power = order_spectrum(e[rows], turns, np.ones(fitted), FINER * top)
+    orders, power = orders[orders <= top], power[orders <= top]
     if len(orders) == 0:
         return orders, power
-    orders, power = orders[orders <= top], power[orders <= top]
     amplitude = 2 * np.sqrt(power * np.mean(e[rows] ** 2) / fitted)
     edges = np.unique(np.geomspace(max(orders[0], 1e-9), orders[-1], 1500))
     cells = np.split(np.arange(len(orders)), np.searchsorted(orders, edges[1:]))

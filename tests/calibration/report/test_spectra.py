@@ -82,3 +82,8 @@ def test_a_section_lasts_ten_rows_at_least(rows: int, drawn: int) -> None:
     t = PERIOD_S * np.arange(float(rows))
     x, y = periods(np.ones(rows), np.zeros(rows, dtype=np.int64), t)
     assert len(x) == len(y) == drawn
+
+
+def test_a_log_that_turns_its_slowest_stage_by_far_less_than_once_has_no_spectrum() -> None:
+    at, amplitude = orders(np.cos(TURNS), {"rim": 0.01})
+    assert len(at) == len(amplitude) == 0
