@@ -127,8 +127,8 @@ def result_of(**more: Any) -> Any:
     run = SimpleNamespace(name="run1", header={"axis": "ra"})
     motion = SimpleNamespace(x=np.array([1.0, 2.0, 4.0, 99.0]), rows=np.array([0, 1, 2]))
     frame = SimpleNamespace(runs=[run], t=np.array([5.0, 6.0, 9.0, 99.0]), scale={"supply_V": 36.0})
-    plain: dict[str, Any] = {"frame": frame, "motion": motion, "torque": None, "selections": {}, "held": "held",
-             "declared": SimpleNamespace(ripple=None, lines=())}  # fmt: skip
+    plain: dict[str, Any] = {"frame": frame, "motion": motion, "torque": None, "selections": {},
+             "held": "held", "declared": SimpleNamespace(ripple=None, lines=())}  # fmt: skip
     return SimpleNamespace(**(plain | more))
 
 
@@ -137,7 +137,8 @@ def test_the_facts_of_a_log_stand_beside_the_findings() -> None:
     loop = part.motor.loop
     torque = SimpleNamespace(drive=SimpleNamespace(per_ampere=77.0))
     found = facts_of(result_of(torque=torque), {"resistance": Parameter(loop + 0.5, "ohm")}, MODEL, "a log")
-    assert (found.name, found.axis, found.span) == ("a log", "ra", 3.0) and found.middle == pytest.approx(7 / 3)
+    assert (found.name, found.axis, found.span) == ("a log", "ra", 3.0)
+    assert found.middle == pytest.approx(7 / 3)
     assert (found.duration_s, found.supply, found.per_ampere) == (4.0, 36.0, 77.0)
     assert found.half_play == pytest.approx(0.5 * part.gear.backlash.si * RATIO)
     assert found.resistance == loop + 0.5 and found.winding == pytest.approx(0.5 + part.motor.resistance.si)
@@ -155,7 +156,7 @@ def test_a_twist_is_a_gears_line_that_both_trains_show(monkeypatch: pytest.Monke
     monkeypatch.setattr(module, "parameters_of", lambda s, k: sizes if k in (0, 4) else {})
     both, one = np.ones(8), np.where(np.arange(8) < 4, 1.0, 0.0)
     candidates = [
-        effect(both, MESH, stage="mesh2", harmonic=2)
+        effect(both, MESH, stage="mesh2", harmonic=2),
         effect(one, MESH, stage="a"), effect(1 - one, SHAFT, stage="b"),
         effect(both, "drag", stage="c"), effect(both, SHAFT, stage="d"), effect(both, SHAFT),
     ]  # fmt: skip
