@@ -77,8 +77,8 @@ def test_a_files_numbers_are_those_of_the_fields_kinds() -> None:
     assert (c.scale, c.steps, c.files) == (2.0, ((0.0, 1.0), (2.0, 3.0)), {"a*": 1.0})
     assert (c.offset, c.delay_s, c.integrated, c.wrap) == (0.0, 0.0, False, None)
     assert isinstance(c.scale, float) and isinstance(c.steps[0][0], float)
-    given = {"counter_torque": 0.1, "torque_constant_Nm_per_A": 1, "resistance_ohm": 2, "train_stiffness_Nm_per_rad": 3,
-             "rotor_inertia_kgm2": [1, 2]}  # fmt: skip
+    given = {"counter_torque": 0.1, "torque_constant_Nm_per_A": 1, "resistance_ohm": 2,
+             "train_stiffness_Nm_per_rad": 3, "rotor_inertia_kgm2": [1, 2]}  # fmt: skip
     m = made(Motors, given)
     assert (m.torque_constant, m.resistance, m.train_stiffness, m.rotor_inertia) == (
         1.0,
@@ -96,9 +96,10 @@ def test_a_files_numbers_are_those_of_the_fields_kinds() -> None:
 @pytest.mark.parametrize(
     ("unit", "turn"),
     [
-        ("rad", 2 * pi), ("radians", 2 * pi), ("mrad", 2000 * pi), ("gon", 400.0), ("deg", 360.0), ("Degrees", 360.0),
-        ("°", 360.0), ("arcmin", 21600.0), ("arcsec", 1296000.0), ("rev", 1.0), ("motor turns", 1.0), ("mm", None),
-        ("", None), (" ", None),
+        ("rad", 2 * pi), ("radians", 2 * pi), ("mrad", 2000 * pi), ("gon", 400.0), ("deg", 360.0),
+        ("Degrees", 360.0), ("°", 360.0), ("arcmin", 21600.0), ("arcsec", 1296000.0), ("rev", 1.0),
+        ("motor turns", 1.0),
+        ("mm", None), ("", None), (" ", None),
     ],
 )  # fmt: skip
 def test_a_units_name_says_how_many_are_a_turn(unit: str, turn: float | None) -> None:

@@ -105,9 +105,8 @@ CHANNELS = ("position", "effort", "velocity", "acceleration", "motor_a", "motor_
 @pytest.mark.parametrize("channel", ["effort", "velocity", "acceleration", "motor_a", "motor_b"])
 def test_a_response_or_a_rate_that_holds_still_explains_nothing(channel: str) -> None:
     said = refused(check_stuck, drive(1.0, **{channel: 3.0}), rig(*CHANNELS))
-    assert said == (
-        f"a.csv: column '{channel}': holds 3 in every row while the position moves: it measures nothing, leave it out"
-    )
+    why = "holds 3 in every row while the position moves: it measures nothing, leave it out"
+    assert said == f"a.csv: column '{channel}': {why}"
     check_stuck(drive(0.0, **{channel: 3.0}), rig(*CHANNELS))
     check_stuck(drive(2e-9, **{channel: 3.0}), rig(*CHANNELS))  # as numbers of about 5 are rounded
     assert refused(check_stuck, drive(3e-9, **{channel: 3.0}), rig(*CHANNELS)) == said
