@@ -48,6 +48,14 @@ def test_the_first_force_is_explained_by_the_normal_one_where_both_have_a_unit()
     assert explained(FREE, effort=_Role("u", "", FREE)).fields["response"][0]["unit"] == "units"
 
 
+def test_a_column_that_moves_as_the_position_does_is_looked_for_without_a_force() -> None:
+    d = drafted(goal=np.roll(np.cumsum(FREE), -4))
+    d.roles = {"position": _Role("p", "deg", np.cumsum(FREE))}
+    _response(d)
+    assert d.fields["response"][0] == {"channel": "position2", "unit": "deg"}
+    assert (d.roles["position"].column, d.roles["position2"].column) == ("goal", "p")
+
+
 ONE_WAY = np.full(1000, 1.0)
 
 

@@ -62,6 +62,24 @@ def test_a_sensor_of_the_same_steps_is_a_second_one(steps: float, own: float, fo
         assert (said.unit, said.scale, said.why) == ("deg", 0.5, "it has the position's steps")
 
 
+def test_a_position_of_another_scale_is_compared_in_the_columns_own_unit() -> None:
+    """A counter of 256 steps that wraps, 0.5 deg each: the draft joins it before any rate is taken."""
+    counts = np.round(4 * np.cumsum(SLOW)) % 256
+    d = drafted(p=counts, v=SLOW)
+    d.put("position", "p", "deg", 0.5)
+    _by_motion(d)
+    p = d.roles["position"]
+    assert p.more == {"wrap": 256.0} and np.abs(np.diff(p.x)).max() <= 0.5 * 5
+    assert d.roles["velocity"].column == "v" and d.roles["velocity"].scale == pytest.approx(2.0, rel=0.02)
+
+
+def test_the_strongest_of_several_columns_is_the_rate() -> None:
+    d = drafted(p=np.cumsum(SLOW), a=OTHER, v=SLOW)
+    d.put("position", "p", "deg")
+    _by_motion(d)
+    assert d.roles["velocity"].column == "v" and set(d.left) == {"a"}
+
+
 def test_a_set_point_stands_for_the_position_where_no_force_is_logged() -> None:
     d = drafted()
     d.roles = {"position": _Role("p", "deg", SLOW)}

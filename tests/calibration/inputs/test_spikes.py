@@ -107,6 +107,14 @@ def test_a_spikes_neighbours_agree_and_the_ends_have_none() -> None:
         y = np.resize([0.0, 0.1], 200)
         y[60:62] = [90.0, beside]
         assert _far_off(y, 1)[60] == found, beside
+    for calm, found in ((85.0, False), (20.0, True)):  # and from the rows beyond them
+        y = np.resize([0.0, 0.1], 200)
+        y[[58, 62]] = calm
+        y[60] = 90.0
+        assert _far_off(y, 1)[60] == found, calm
+    ramp = wave(200) + 30.0 * np.arange(200)
+    ramp[60] += 90.0
+    assert np.flatnonzero(_far_off(ramp, 1)).tolist() == []  # twice 30 is what its neighbours differ by
     pair = wave(200)
     pair[[60, 61]] = 90.0
     assert np.flatnonzero(_far_off(pair, 2)).tolist() == [60, 61] and not _far_off(pair, 1).any()

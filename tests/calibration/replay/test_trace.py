@@ -163,6 +163,15 @@ def test_what_came_before_a_run_is_its_history() -> None:
     assert before_start(f, f.run == 1) is None
 
 
+def test_a_run_of_three_rows_begins_with_the_speed_of_all_of_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    f = frame(
+        3, position=np.array([1.0, 2.0, 6.0]), setpoint=np.full(3, ARCSEC), effort=np.array([0.5, 0.0, 0.0])
+    )
+    c = ran(monkeypatch, f, f.run == 0).command
+    assert c.start_rate * ARCSEC == pytest.approx(5.0 / 5 / PERIOD_S) and np.isnan(c.setpoint).all()
+    assert c.history is None and c.start_s == 0.0
+
+
 def test_a_set_point_stays_in_force_where_rows_are_missing() -> None:
     present = np.array([False, True, True, False, False, True])
     x = np.array([9.0, 1.0, 2.0, 7.0, NAN, 3.0])
