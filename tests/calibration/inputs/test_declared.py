@@ -138,8 +138,7 @@ def test_teeth_are_periods_and_a_train_is_cycles_per_turn() -> None:
     )
     assert train_of(Rig("r", PATH, {"position": Column("mm")}, (), tuple(found))).orders["wheel"] == 1 / 6
     assert train_of(Rig("r", PATH, {}, (), tuple(found))).orders["wheel"] == 1 / 6
-    parts = Rig("r", PATH, {}, (), tuple(stage(k) for k in ()))
-    assert train_of(parts).motor == ""
+    assert train_of(Rig("r", PATH, {}, (), ())).motor == ""
 
 
 @pytest.mark.parametrize(

@@ -43,7 +43,7 @@ def test_gains_are_those_the_effort_is_made_of(kp: float, ki: float, roller: flo
     f.columns["effort"] /= max(small, 1.0)
     f.scale["effort_full_scale"] *= max(small, 1.0)
     got = found(f)
-    assert got is not None and (got.kp, got.ki) == (pytest.approx(kp, rel=1e-6), pytest.approx(ki, rel=1e-6))
+    assert got is not None and [got.kp, got.ki] == pytest.approx([kp, ki], rel=1e-6)
 
 
 @pytest.mark.parametrize(("kp", "ki"), [(-3.0, 0.5), (3.0, -0.5)])
@@ -81,10 +81,7 @@ def test_rows_of_another_mode_or_a_new_set_point_are_left_out() -> None:
     f = loop(1000)
     f.columns["effort"][300:500] += 0.2
     got = found(f)
-    assert got is not None and (got.kp, got.ki) == (
-        pytest.approx(3.0, rel=1e-3),
-        pytest.approx(0.5, rel=1e-3),
-    )
+    assert got is not None and [got.kp, got.ki] == pytest.approx([3.0, 0.5], rel=1e-3)
     for change, told in ((0.6, 400 + 600 - 25), (0.4, 1000)):  # of a count: less is the same set point
         f = loop(1000, change=change * COUNT / WINDOW_S)
         f.columns["effort"][400:] += 0.001 * np.sign(change)

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from calibration.finding import Finding, Parameter
+from calibration.inputs.declaredplant import PATHS
 from calibration.names import NAMES
 from calibration.names.inplant import Facts, Made
 from calibration.replay import plantfile
@@ -55,7 +56,7 @@ def test_a_declared_number_that_is_an_effect_is_said_with_its_place() -> None:
     named = ((n, x.changed) for n, x in NAMES.items() if x.changed is not None)
     name, changed = next((n, c) for n, c in named if "coulomb" in c.numbers)
     found = convert(Finding(name, "T", "velocity"), Facts("a log", "dec"))
-    paths = " and ".join(plantfile.PATHS[number] for number in changed.numbers)
+    paths = " and ".join(PATHS[number] for number in changed.numbers)
     assert found == Made(remarks=[f"{name}: in the plant as axes.dec.{paths}"])
 
 

@@ -25,9 +25,12 @@ def loop(f: Frame, gains: Gains | None = None) -> Loop:
 
 def test_what_is_measured_is_in_the_traces_units() -> None:
     ia, ib = np.array([1.0, 2.0, 6.0, 1.0]), np.array([0.5, 0.5, 0.5, 6.0])
-    columns = {"velocity": 3.0 * ARCSEC, "position": 7.0 * ARCSEC}
+    columns: dict[str, Any] = {
+        "velocity": np.full(5, 3.0 * ARCSEC),
+        "position": np.full(5, 7.0 * ARCSEC),
+    }
     f = frame(1, 4, current_a=np.array([0.0, *ia]), current_b=np.array([0.0, *ib]),
-              **{name: np.full(5, x) for name, x in columns.items()})  # fmt: skip
+              **columns)  # fmt: skip
     got = loop(f).measured(f.run == 1)
     assert np.array_equal(got.torque, [25.0, 75.0, NAN, NAN], equal_nan=True)
     assert got.velocity == pytest.approx(np.full(4, 3.0)) and got.position == pytest.approx(np.full(4, 7.0))
