@@ -33,7 +33,7 @@ def breaking(position: Array, period_s: float, stribeck: float) -> Mask:
     good = np.isfinite(position)
     x = np.interp(np.arange(len(position)), np.flatnonzero(good), position[good]) * ARCSEC
     half = max(round(limits.SPEED_S / period_s / 2), 1)
-    padded = np.pad(x, half, mode="edge")
+    padded = np.pad(x, half, mode="reflect", reflect_type="odd")  # at the speed of the first and last rows
     speed = np.abs(padded[2 * half :] - padded[: -2 * half]) / (2 * half * period_s)
     passage = np.zeros(len(x))
     passage[1:] = (speed[1:] > stribeck) != (speed[:-1] > stribeck)

@@ -38,14 +38,15 @@ def identify(frame: Frame, rows: Mask) -> Gains | None:
     position, trusted = fill(frame.columns["position"], frame.run)
     wanted = np.cumsum(np.nan_to_num(setpoint)) * frame.period_s
     late = np.abs(effort) > AT_LIMIT * frame.scale["effort_full_scale"]
-    busy = np.cumsum((late | ~trusted | ~np.isfinite(error)).astype(float))
+    bad = late | ~trusted | ~np.isfinite(error)
+    busy = np.cumsum(bad.astype(float))
 
     def over(x: Array) -> Array:
         return np.asarray(x[lag:] - x[:-lag])
 
     y = over(effort)
     x = np.column_stack([over(error), over(wanted - position) / count, over(position) / count])
-    good = np.isfinite(y) & np.isfinite(x).all(axis=1) & (over(busy) == 0)
+    good = np.isfinite(y) & np.isfinite(x).all(axis=1) & (over(busy) == 0) & ~bad[:-lag]
     good &= (frame.run[lag:] == frame.run[:-lag]) & rows[lag:] & rows[:-lag]
     good &= (np.abs(over(np.nan_to_num(setpoint))) < 0.5 * count / window) & (effort[lag:] != 0)
     if good.sum() < LEAST_LOOP_ROWS:

@@ -47,6 +47,7 @@ def clocked(stamp: Any = None, **columns: Any) -> _Draft:
         ("t", 1.7e18 + K * 1e7, 1e-9, 1e-2),
         ("t", 0.25 * K**1.0, 1.0, 0.25),
         ("anything", 0.01 * K, 1.0, 0.01),
+        ("b", 0.5 * K, 1.0, 0.5),
     ],
 )
 def test_a_clock_is_in_s_by_its_unit_its_size_or_its_steps(

@@ -1,20 +1,16 @@
 """What `schmidt rig` prints of a drive and its files, line by line, and the picture of its columns."""
 
-from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
-from calibration.balances.width import NARROW, USUAL
-from calibration.inputs.declaration import Column, Response, Rig, Stage
-from calibration.inputs.rigfile import telescope
+from calibration.inputs.declaration import Column, Rig
 from calibration.inputs.run import Run, Signal
 from calibration.report import rigview
-from calibration.report.rigview import SI, _draw, _head, _power, _table, show_rig
+from calibration.report.rigview import SI, _draw, _head, _table, show_rig
 from tests.calibration.logs import tiny_log
 
 RIG = """rig: bench
@@ -161,52 +157,3 @@ def test_a_long_file_is_thinned(
 ) -> None:
     (line,) = drawn(monkeypatch, tmp_path, record(count))[0].lines
     assert len(line.get_xdata()) == points and not np.isnan(line.get_ydata()).any()
-
-
-STAGES = (Stage("motor", 2.0, None, 2, None), Stage("worm", None, 480.0, 2, None))
-BENCH = Rig("bench", Path("r"), {}, (Response("force", "N"),), STAGES)
-
-
-def power(monkeypatch: pytest.MonkeyPatch, share: float = 0.08, rig: Rig = BENCH, **more: Any) -> list[str]:
-    """Of 400 rows, of which three quarters are fitted, with a rest of 2 N."""
-    count = more.pop("count", 400)
-    train = np.arange(count) < count * more.pop("part", 0.75)
-    rest = np.resize([2.0, -2.0], count)
-    p = SimpleNamespace(
-        train=train, test=~train, unit="N", blocks=25, plain_fit=lambda at: ({}, rest * (at == train))
-    )
-    view = SimpleNamespace(
-        sigma=0.0, wide=5.0, period_s=0.01, filter=SimpleNamespace(sigma=0.0), dynamic=False,
-        x=np.arange(float(count)), rows=np.arange(count),
-    )  # fmt: skip
-    view.__dict__.update(more)
-    views = {id(USUAL): view, id(NARROW): SimpleNamespace(wide=2.0)}
-    asked: list[Any] = []
-    monkeypatch.setattr(rigview, "view_of", lambda *given: views[id(given[-1])])
-    monkeypatch.setattr(rigview, "problem_of", lambda *given: p)
-    monkeypatch.setattr(rigview, "least_share", lambda _, count: share if count == 1000 else None)
-    monkeypatch.setattr(rigview, "one_filter", lambda *given: asked.append(given))
-    found = list(_power([record(count)], rig, rig.responses[0]))
-    assert bool(asked) is bool(view.dynamic and found)
-    return found
-
-
-def test_a_log_shows_what_is_plain_in_its_rest(monkeypatch: pytest.MonkeyPatch) -> None:
-    turns, named = "  turns: 149.5 of motor", "  the declared terms leave 2 N rms; could be named beside it: "
-    assert power(monkeypatch) == [
-        "force: 300 rows to fit through no filter (0.1 s where that shows nothing), 25 independent blocks",
-        turns,
-        named + "a line of 0.8 N (8 % of it)",  # an amplitude of a times sqrt(2 share)
-    ]
-    smooth = power(monkeypatch, 0.99, sigma=3.0, filter=SimpleNamespace(sigma=3.0), wide=2.0, dynamic=True)
-    assert smooth[0] == "force: 300 rows to fit through a filter of 0.15 s, 25 independent blocks"
-    assert smooth[2] == named + "a line of 2.81 N (99 % of it)"
-    assert power(monkeypatch, 1.0)[2] == named + "nothing: the log is too short"
-    assert len(power(monkeypatch, rig=replace(BENCH, stages=STAGES[1:]))) == 2
-
-
-def test_a_short_log_one_part_or_another_kind_of_drive_has_no_power(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert power(monkeypatch, count=199) == [] and len(power(monkeypatch, count=200)) == 3
-    assert power(monkeypatch, part=1.0) == power(monkeypatch, part=0.0) == []
-    assert power(monkeypatch, rig=replace(BENCH, motors=telescope("ra").motors)) == []
-    assert power(monkeypatch, rig=replace(BENCH, responses=(Response("position", "deg"),))) == []
