@@ -1,0 +1,212 @@
+"""Faults of the bus by themselves: what a guest sends and when, when it leaves, and what proves it."""
+
+from typing import Any
+
+import pytest
+
+from bus.can import Flip, Frame
+from bus.can.length import frame_bits
+from bus.can.port import BusError
+from bus.protocol import COMMAND_BASE, MEASUREMENT_BASE, REPLY_BASE
+from scenarios.lab.faults import onbus
+from scenarios.lab.faults.onbus import Babbler, BitErrors, Cut, Dominant, Forger, Guest, Twin, WrongRate
+from tests.scenarios.lab.faults.stub import BIT_NS, place
+
+ONE, OTHER = Frame(0x123, b"\1"), Frame(0x124, b"\2")
+
+
+def test_a_guest_acts_when_its_frame_is_through() -> None:
+    where = place()
+    guest = Guest(where, "guest")
+    guest.load(ONE, 5)
+    port: Any = guest.port
+    assert port.sent == [(ONE, 5)] and port.name == "guest"
+    assert where.evidence.first_ns is None
+    port.on_sent(9, ONE)
+    assert (where.evidence.first_ns, where.evidence.on) == (9, "frame 123#01")
+    assert port in guest.wire.ports
+
+
+@pytest.mark.parametrize(
+    ("sending", "loaded", "acts"), [(True, True, True), (False, True, False), (True, False, False)]
+)
+def test_an_error_of_its_own_frame_is_proof_too(sending: bool, loaded: bool, acts: bool) -> None:
+    where = place()
+    guest: Any = Guest(where, "guest")
+    if loaded:
+        guest.load(ONE, 5)
+    guest.port.on_error(7, BusError("bit", sending))
+    assert where.evidence.on == ("frame 123#01" if acts else "")
+
+
+def test_a_guest_leaves_at_once_or_after_what_has_begun() -> None:
+    quiet: Any = Guest(place(), "guest")
+    quiet.load(ONE, 5)
+    quiet.clear(6)
+    assert quiet.port not in quiet.wire.ports
+    busy: Any = Guest(place(), "guest")
+    busy.load(ONE, 5)
+    busy.load(OTHER, 5)
+    busy.port.begun = [OTHER]
+    busy.clear(6)
+    assert busy.port in busy.wire.ports
+    busy.load(ONE, 7)
+    assert len(busy.port.sent) == 2  # who leaves begins nothing
+    busy.port.on_sent(8, OTHER)
+    assert busy.port not in busy.wire.ports
+
+
+def test_a_guest_that_is_bus_off_leaves_whatever_it_holds() -> None:
+    guest: Any = Guest(place(), "guest")
+    guest.load(ONE, 5)
+    guest.port.begun, guest.port.state = [ONE], "bus_off"
+    guest.clear(6)
+    assert guest.port not in guest.wire.ports
+
+
+def test_a_full_buffer_takes_nothing() -> None:
+    guest: Any = Guest(place(), "guest")
+    guest.port.room = 1
+    guest.load(ONE, 1)
+    guest.load(OTHER, 2)
+    assert guest._loaded == [ONE]
+
+
+@pytest.mark.parametrize(("load", "pauses"), [(1.0, 0.0), (0.5, 1.0), (0.2, 4.0)])
+def test_a_babbler_leaves_a_share_of_the_time_to_others(load: float, pauses: float) -> None:
+    babbler: Any = Babbler(place(), {"identifier": 0x10, "load": load}, 1000)
+    frame = Frame(0x10, b"\xff" * 8)
+    babbler.port.on_sent(50_000, frame)
+    pause_ns = round(pauses * frame_bits(frame) * BIT_NS)
+    assert babbler.port.sent == [(frame, 1000), (frame, 50_000 + pause_ns)]
+    assert babbler.port.name == "babbler"
+
+
+def test_a_forger_repeats_its_frame_until_it_is_cleared() -> None:
+    where = place()
+    forger: Any = Forger(where, {"identifier": 0x55, "data": 0x0102, "period": 0.004}, 100)
+    queue: Any = where.network.queue
+    assert [queue.step(), queue.step()] == [100, 4_000_100]
+    frame = Frame(0x55, bytes([0, 0, 0, 0, 0, 0, 1, 2]))
+    assert forger.port.sent == [(frame, 100), (frame, 4_000_100)] and forger.port.name == "forger"
+    forger.clear(5_000_000)
+    assert not queue.due and forger.port not in forger.wire.ports
+
+
+def test_a_twin_measures_something_else_and_answers_commands() -> None:
+    where = place()
+    twin: Any = Twin(where, {"node": "B", "period": 0.005}, 0)
+    queue: Any = where.network.queue
+    queue.step()
+    assert twin.port.name == "second B"
+    assert twin.port.filters == [(0x7FF, COMMAND_BASE + 0x12)]
+    assert twin.port.sent == [(Frame(MEASUREMENT_BASE + 0x12, b"\x12" + b"\x55" * 7), 0)]
+    for data, opcode in ((b"\x12\x07", 7), (b"\x12", 0), (b"", 0)):
+        twin.port.sent.clear()
+        twin.port.on_receive(1000, Frame(COMMAND_BASE + 0x12, data))
+        answer = bytes([0x12, opcode, 0, 0, 0x55, 0x55, 0, 0])
+        assert twin.port.sent == [(Frame(REPLY_BASE + 0x12, answer), 2000)]  # 700 ns later, 300 ns long
+
+
+def test_all_boards_cannot_be_parted_nor_one_twice(monkeypatch: pytest.MonkeyPatch) -> None:
+    where = place("A", "B", "C")
+    with pytest.raises(ValueError, match=r"^partition: nodes: some boards, not all of them$"):
+        Cut(where, {"nodes": ["A", "B", "C"]}, 0)
+    made: list[Any] = []
+    healed: list[int] = []
+
+    class Stub:
+        def __init__(self, *each: Any) -> None:
+            made.extend(each)
+
+        def heal(self, t_ns: int) -> None:
+            healed.append(t_ns)
+
+    monkeypatch.setattr(onbus, "Partition", Stub)
+    cut: Any = Cut(where, {"nodes": ["A", "B"]}, 3)
+    ports: Any = [where.board(name).port for name in ("A", "B")]
+    assert made[:3] == [where.network.wire, ports, 3]
+    ports[0].online = ports[1].online = False
+    made[3](4, ONE, "C")
+    assert where.evidence.first_ns is None  # nobody is there to miss it
+    ports[1].online = True
+    made[3](5, ONE, "C")
+    assert (where.evidence.first_ns, where.evidence.on) == (5, "frame 123#01")
+    cut.clear(6)
+    assert healed == [6]
+    ports[1]._wire = None
+    with pytest.raises(ValueError, match=r"^partition: nodes: one of them is cut off already$"):
+        Cut(where, {"nodes": ["A", "B"]}, 7)
+
+
+def test_a_wrong_rate_is_the_last_one_given_and_errors_are_its_own_meanwhile() -> None:
+    where = place()
+    port: Any = where.board("A").port
+    first: Any = WrongRate(where, {"node": "A", "bitrate": 250_000}, 0)
+    assert port.timing.bit_ns == pytest.approx(4000.0)
+    port.on_error(3, BusError("stuff"))
+    assert where.evidence.on == "stuff error at A"
+    second: Any = WrongRate(where, {"node": "A", "bitrate": 125_000}, 0)
+    assert port.timing.bit_ns == pytest.approx(8000.0)
+    first.clear(0)
+    assert port.timing.bit_ns == pytest.approx(8000.0)
+    second.clear(0)
+    assert port.timing is None and port.on_error is None
+
+
+def test_a_bus_is_held_by_the_first_and_let_go_by_the_last(monkeypatch: pytest.MonkeyPatch) -> None:
+    held: list[int] = []
+    freed: list[int] = []
+
+    class Stub:
+        def __init__(self, _wire: Any, t_ns: int) -> None:
+            held.append(t_ns)
+
+        def release(self, t_ns: int) -> None:
+            freed.append(t_ns)
+
+    monkeypatch.setattr(onbus, "StuckDominant", Stub)
+    where = place()
+    first, second = Dominant(where, {}, 1), Dominant(where, {}, 2)
+    assert held == [1]
+    first.clear(3)
+    assert not freed and where.evidence.first_ns is None
+    second.clear(4)
+    assert freed == [4] and (where.evidence.first_ns, where.evidence.on) == (4, "the bus")
+    assert where.board("A").port.on_error is None
+    again = Dominant(other := place(), {}, 5)
+    other.board("A").port.on_error(6, BusError("form"))
+    assert other.evidence.on == "form error at A"
+    again.clear(7)
+    alone = Dominant(third := place(), {}, 8)
+    alone.clear(9)
+    assert third.evidence.first_ns is None  # it needs an error for its proof
+
+
+@pytest.mark.parametrize(
+    ("node", "sender", "meant"), [(None, "A", True), ("A", "A", True), ("B", "A", False)]
+)
+def test_bit_errors_meet_the_frames_of_one_node_or_of_all(node: str | None, sender: str, meant: bool) -> None:
+    where = place()
+    given = {"probability": 1.0} | ({"node": node} if node else {})
+    BitErrors(where, given, 0)
+    flips = [where.network.wire.disturbance(5, ONE, sender) for _ in range(300)]
+    if not meant:
+        assert set(flips) == {None} and where.evidence.first_ns is None
+        return
+    places = {flip.bit if hasattr(flip, "bit") else flip[0] for flip in flips}
+    assert isinstance(flips[0], Flip)
+    assert places == set(range(frame_bits(ONE) - 3))  # all but the intermission
+    assert where.evidence.on == "frame 123#01"
+
+
+def test_bit_errors_pass_on_what_lies_below_and_meet_their_share() -> None:
+    where = place()
+    where.network.wire.disturbance = lambda t_ns, frame, sender: Flip(99)
+    BitErrors(where, {"probability": 0.25}, 0)
+    flips = [where.network.wire.disturbance(5, ONE, "A") for _ in range(2000)]
+    assert flips.count(Flip(99)) == pytest.approx(1500, abs=80)
+    none = place()
+    BitErrors(none, {"probability": 0.0}, 0)
+    assert none.network.wire.disturbance is not None
+    assert none.network.wire.disturbance(5, ONE, "A") is None
