@@ -128,8 +128,9 @@ def _alone(driven: Array) -> NDArray[np.bool_]:
 def _of_the_motion(s: Scene, t: Array, follows: Array, hertz: float) -> bool:
     """Whether errors of what `follows` the motion (n_fitted,) leave such a line, as steps of a stair do."""
     driven = left = 0.0
-    for k in np.unique(s.problem.session):
-        rows = np.flatnonzero(s.problem.train & (s.problem.session == k))
+    files, train = s.problem.session, s.problem.train
+    for k in np.unique(files[train]):
+        rows = np.flatnonzero(train & (files == k))
         window = np.hanning(len(rows)) * np.exp(-2j * np.pi * hertz * t[rows])
         for_each = [float(np.abs(window @ (y[rows] - y[rows].mean())) ** 2) for y in (follows, s.residual)]
         driven, left = driven + for_each[0], left + for_each[1]

@@ -140,12 +140,15 @@ def test_a_log_without_an_effort_lacks_it() -> None:
 
 
 @pytest.mark.parametrize(("part", "told"), [(0.04, False), (0.06, True)])
+@pytest.mark.parametrize("files", [1, 3])  # the last of three is held out, and says nothing of it
 def test_a_line_of_a_twentieth_of_what_the_declared_terms_carry_there_is_their_own_error(
-    part: float, told: bool
+    part: float, told: bool, files: int
 ) -> None:
+    file = np.arange(ROWS) * files // ROWS
     drifting = 0.01 * T  # a motion that never comes again: no multiples of its frequency are left out
     carried = np.sin(2 * np.pi * HERTZ * T + 1.3)
     left = part * np.sin(2 * np.pi * HERTZ * T + 0.4) + 0.001 * NOISE
-    s = drive(drifting, residual=left, y=carried, base=carried[:, None])
+    held = (file == 2).astype(bool)
+    s = drive(drifting, residual=left, y=carried, base=carried[:, None], files=file, held=held)
     here = [c.frequency for c in named.columns(s) if abs((c.frequency or 0.0) - HERTZ) < 0.5 / SPAN_S]
     assert bool(here) is told
