@@ -26,7 +26,8 @@ def problem(*spans_s: float, clock: bool = False, valid: Any = None) -> Problem:
     none = np.zeros(len(t), dtype=bool)
     return Problem(
         channel="K", unit="arcsec", y=np.zeros(len(t)), base=np.ones((len(t), 1)),
-        base_labels=[("offset", "")], t=t, run=run, session=run, valid=~none if valid is None else valid(t), held=none, period_s=PERIOD_S,
+        base_labels=[("offset", "")], t=t, run=run, session=run,
+        valid=~none if valid is None else valid(t), held=none, period_s=PERIOD_S,
         domains={"clock": t + 7.0} if clock else {},
     )  # fmt: skip
 
@@ -60,7 +61,8 @@ def test_harmonics_are_pairs_of_every_section_that_turned_far_enough() -> None:
     ("spans", "rate", "seen"),
     [
         ((201.0,), 0.01, True), ((198.0,), 0.01, False), ((150.0, 150.0), 0.01, True),
-        ((150.0, 147.0), 0.01, False), ((150.0, 117.0, 117.0), 0.01, False), ((150.0, 120.0, 120.0), 0.01, True),
+        ((150.0, 147.0), 0.01, False), ((150.0, 117.0, 117.0), 0.01, False),
+        ((150.0, 120.0, 120.0), 0.01, True),
     ],
 )  # fmt: skip
 def test_a_part_is_seen_over_two_turns_or_three_in_all(
