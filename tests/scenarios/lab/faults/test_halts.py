@@ -10,7 +10,7 @@ from scenarios.lab.faults.onboard import Hang, LateInterrupts
 from tests.scenarios.lab.faults.stub import place
 
 ONE = Frame(0x123, b"\1")
-MS = 1_000_000
+S = 1_000_000_000
 
 
 class StubHalt:
@@ -86,19 +86,19 @@ def test_interrupts_are_masked_for_a_while_again_and_again(halt: type[StubHalt])
     where = place()
     board, queue = where.board("A"), where.network.queue
     halt.due = None
-    late = LateInterrupts(where, {"node": "A", "masked": 0.002, "every": 0.005}, 0)
+    late = LateInterrupts(where, {"node": "A", "masked": 2.0, "every": 5.0}, 0)
     steps = [queue.step() for _ in range(4)]  # type: ignore[attr-defined]
     halt.due = 30
-    assert steps == [2 * MS, 5 * MS, 7 * MS, 10 * MS]
+    assert steps == [2 * S, 5 * S, 7 * S, 10 * S]
     assert board.calls == [
         ("halt", 0),
-        ("resume", 2 * MS),
-        ("halt", 5 * MS),
-        ("resume", 7 * MS),
-        ("halt", 10 * MS),
+        ("resume", 2 * S),
+        ("halt", 5 * S),
+        ("resume", 7 * S),
+        ("halt", 10 * S),
     ]
-    late.clear(11 * MS)
-    assert board.calls[-1] == ("resume", 11 * MS) and not queue.due  # type: ignore[attr-defined]
+    late.clear(11 * S)
+    assert board.calls[-1] == ("resume", 11 * S) and not queue.due  # type: ignore[attr-defined]
 
 
 @pytest.mark.parametrize("masked", [0.005, 0.006])

@@ -85,13 +85,13 @@ def test_a_brown_out_s_controller_hears_nothing_more() -> None:
 def test_resets_come_at_once_and_every_so_often_until_they_are_cleared() -> None:
     where = place()
     board, queue = where.board("A"), where.network.queue
-    resets: Any = Resets(where, {"node": "A", "every": 0.04}, 10)
+    resets: Any = Resets(where, {"node": "A", "every": 40.0}, 10)
     assert board.calls == [("off", 10), ("on", 10)] and where.evidence.first_ns == 10
-    assert queue.step() == 10 + 40 * MS  # type: ignore[attr-defined]
-    assert board.calls[2:] == [("off", 10 + 40 * MS), ("on", 10 + 40 * MS)]
-    resets.clear(50 * MS)
+    assert queue.step() == 10 + 40_000 * MS  # type: ignore[attr-defined]
+    assert board.calls[2:] == [("off", 10 + 40_000 * MS), ("on", 10 + 40_000 * MS)]
+    resets.clear(50_000 * MS)
     assert not queue.due  # type: ignore[attr-defined]
-    resets._reset(60 * MS)
+    resets._reset(60_000 * MS)
     assert len(board.calls) == 4
 
 

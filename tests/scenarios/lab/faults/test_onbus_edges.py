@@ -84,12 +84,12 @@ def test_a_babbler_leaves_a_share_of_the_time_to_others(load: float, pauses: flo
 
 def test_a_forger_repeats_its_frame_until_it_is_cleared() -> None:
     where = place()
-    forger: Any = Forger(where, {"identifier": 0x55, "data": 0x0102, "period": 0.004}, 100)
+    forger: Any = Forger(where, {"identifier": 0x55, "data": 0x0102, "period": 4.0}, 100)
     queue: Any = where.network.queue
-    assert [queue.step(), queue.step()] == [100, 4_000_100]
+    assert [queue.step(), queue.step()] == [100, 4_000_000_100]
     frame = Frame(0x55, bytes([0, 0, 0, 0, 0, 0, 1, 2]))
-    assert forger.port.sent == [(frame, 100), (frame, 4_000_100)] and forger.port.name == "forger"
-    forger.clear(5_000_000)
+    assert forger.port.sent == [(frame, 100), (frame, 4_000_000_100)] and forger.port.name == "forger"
+    forger.clear(5_000_000_000)
     assert not queue.due and forger.port not in forger.wire.ports
 
 
