@@ -67,12 +67,13 @@ def test_an_action_is_a_command(step: str, asked: tuple[Any, ...]) -> None:
     assert Night(step).run(3).desk.asked[0] == asked
 
 
-@pytest.mark.parametrize(
-    "step", ["display: {brightness: 1}", "set_parameter: {node: DISPLAY, parameter: 1, value: 1}"]
-)
-def test_a_board_that_is_not_there_fails_the_step(step: str) -> None:
+@pytest.mark.parametrize(("step", "board"), [
+    ("display: {brightness: 1}", "DISPLAY"), ("dome: {shutter: open}", "DOME"),
+    ("set_parameter: {node: FOCUS, parameter: 1, value: 1}", "FOCUS"),
+])  # fmt: skip
+def test_a_board_that_is_not_there_fails_the_step(step: str, board: str) -> None:
     night = Night(step, desk=Desk(RA, DEC)).run(0)
-    assert night.programme.records[0].failed == "DISPLAY is not on this network"
+    assert night.programme.records[0].failed == f"{board} is not on this network"
 
 
 @pytest.mark.parametrize(("step", "place", "goal"), [
