@@ -145,8 +145,8 @@ def test_the_page_holds_what_was_summed_up(tmp_path: Path, monkeypatch: pytest.M
         seen.update(given)
         return "page"
 
-    monkeypatch.setattr(report_page.table, "read", lambda path: columns)
-    monkeypatch.setattr(report_page.figures, "distributions", lambda *_: "drawn")
+    monkeypatch.setattr("scenarios.campaign.table.read", lambda path: columns)
+    monkeypatch.setattr("scenarios.campaign.figures.distributions", lambda *_: "drawn")
     monkeypatch.setattr(report_page, "picture", lambda figure, path: (figure, path.name))
     monkeypatch.setattr(report_page, "rendered", rendered)
     report_page.write(plan(varied("a", 1, 2, 3)), tmp_path, 5.0, 2)

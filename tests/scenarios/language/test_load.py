@@ -2,11 +2,12 @@
 
 import math
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from scenarios.language.document import Document, ScenarioError, parse
-from scenarios.language.load import convert
+from scenarios.language.load import convert, in_base_units
 from scenarios.language.model import Scenario
 
 BASE = "name: x\nstart_utc: {utc}\nsteps:\n  - power_on: {{}}\n"
@@ -173,3 +174,17 @@ def test_text_that_is_no_document_names_its_line(text: str, said: str) -> None:
     with pytest.raises(ScenarioError) as caught:
         parse(text, FILE)
     assert str(caught.value).startswith(said)
+
+
+@pytest.mark.parametrize(("value", "rule", "found"), [
+    ({"a": "1 min"}, {"additionalProperties": {"x-quantity": "time"}}, {"a": 60.0}),
+    ({"a": "1 min", "b": "x"}, {"properties": {"a": {"x-quantity": "time"}}}, {"a": 60.0, "b": "x"}),
+    (["1 h"], {"oneOf": [{"type": "string"}, {"items": {"x-quantity": "time"}}]}, [3600.0]),
+    (2.5, {"type": "number"}, 2.5), ("2", {"type": "integer"}, "2"), (2.0, {"type": "integer"}, 2),
+])  # fmt: skip
+def test_quantities_of_a_schema_are_base_units(value: object, rule: dict[str, Any], found: object) -> None:
+    assert in_base_units(value, rule) == found
+
+
+def test_a_document_is_checked_first() -> None:
+    assert refused("seed: -1\n").endswith("seed: -1 is out of range; it must be at least 0")

@@ -1,7 +1,7 @@
 """When a step starts, ends, waits in vain or is given up; ticks are whole seconds, and a step ends in one."""
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Generator
 from types import SimpleNamespace
 from typing import Any
 
@@ -124,7 +124,7 @@ def test_a_board_that_does_not_stop_ends_nothing() -> None:
 def test_a_failure_ends_what_runs_beside_it() -> None:
     night, ended = Night("wait: {for: 9 s}, timeout: 2 s"), []
 
-    def procedure() -> Iterator[None]:
+    def procedure() -> Generator[None, None, None]:
         try:
             yield from itertools.repeat(None)
         finally:
