@@ -66,9 +66,11 @@ class Night:
 
     def __init__(self, *steps: str, desk: Desk | None = None) -> None:
         self.desk = desk or Desk()
-        self.logs: Any = self.desk.logs
-        self.eye: Any = object()
-        self.programme = Programme(scenario(*steps), self.desk, self.logs, self.eye)
+        logs: Any = self.desk.logs
+        eye: Any = object()
+        self.logs: Any = logs
+        self.eye: Any = eye
+        self.programme = Programme(scenario(*steps), self.desk, logs, eye)
         self.second = -1
 
     def run(self, until_s: int) -> "Night":
@@ -80,9 +82,9 @@ class Night:
         return self
 
     @property
-    def times(self) -> list[tuple[float | None, float | None]]:
+    def times(self) -> list[Any]:
         """When each step has started and ended, whole seconds."""
         return [
             tuple(None if each is None else round(each, 6) for each in (record.start_s, record.end_s))
             for record in self.programme.records
-        ]  # type: ignore[misc]
+        ]

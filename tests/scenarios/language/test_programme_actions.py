@@ -1,6 +1,7 @@
 """What each action of a scenario asks of the host, and what its record keeps."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -52,7 +53,8 @@ def test_an_action_asks_the_host(
     step: str, where: Any, name: str, given: tuple[Any, ...], noted: Noted, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(where, name, noted)
-    desk = Desk(*Device, *([SimpleNamespace(name="DOME")] if where is dome else []))  # type: ignore[list-item]
+    boards: list[Any] = [*Device, SimpleNamespace(name="DOME")]
+    desk = Desk(*boards)
     night = Night(step, desk=desk).run(0)
     assert noted.given == (desk, *(pytest.approx(g) if isinstance(g, float) else g for g in given))
     assert night.programme.finished and not night.programme.failed
@@ -67,12 +69,13 @@ def test_an_action_is_a_command(step: str, asked: tuple[Any, ...]) -> None:
     assert Night(step).run(3).desk.asked[0] == asked
 
 
-@pytest.mark.parametrize(
-    "step", ["display: {brightness: 1}", "set_parameter: {node: DISPLAY, parameter: 1, value: 1}"]
-)
-def test_a_board_that_is_not_there_fails_the_step(step: str) -> None:
+@pytest.mark.parametrize(("step", "board"), [
+    ("display: {brightness: 1}", "DISPLAY"), ("dome: {shutter: open}", "DOME"),
+    ("set_parameter: {node: FOCUS, parameter: 1, value: 1}", "FOCUS"),
+])  # fmt: skip
+def test_a_board_that_is_not_there_fails_the_step(step: str, board: str) -> None:
     night = Night(step, desk=Desk(RA, DEC)).run(0)
-    assert night.programme.records[0].failed == "DISPLAY is not on this network"
+    assert night.programme.records[0].failed == f"{board} is not on this network"
 
 
 @pytest.mark.parametrize(("step", "place", "goal"), [
@@ -119,7 +122,7 @@ def test_a_goto_keeps_its_star(
 
 def test_a_star_below_the_horizon_fails_the_step() -> None:
     night = Night("goto: {target: Pollux}")
-    night.programme._scenario = programme.replace(night.programme._scenario, horizon_rad=1.5)
+    night.programme._scenario = replace(night.programme._scenario, horizon_rad=1.5)
     failed = night.run(0).programme.records[0].failed
     assert failed and night.programme.failed
 
@@ -166,7 +169,8 @@ def test_guiding_has_the_published_defaults() -> None:
 def test_a_pointing_run_points_by_what_it_found(
     words: str, count: int, fits: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    night, model = Night("wait: {for: 1 s}", f"pointing_run: {{{words}}}"), SimpleNamespace()
+    night = Night("wait: {for: 1 s}", f"pointing_run: {{{words}}}")
+    model: Any = SimpleNamespace()
     seen: list[Any] = []
 
     def fit(*given: Any) -> Any:

@@ -1,5 +1,7 @@
 """When a step starts, ends, waits in vain or is given up; ticks are whole seconds, and a step ends in one."""
 
+import itertools
+from collections.abc import Generator
 from types import SimpleNamespace
 from typing import Any
 
@@ -117,3 +119,18 @@ def test_a_board_that_does_not_stop_ends_nothing() -> None:
     assert night.programme.records[0].failed == "no" and night.times[0] == (0, 0)
     assert night.logs.errors == ["0 HOST step 'stop 1' failed: no"]
     assert night.run(3).times[1] == (None, None)
+
+
+def test_a_failure_ends_what_runs_beside_it() -> None:
+    night, ended = Night("wait: {for: 9 s}, timeout: 2 s"), []
+
+    def procedure() -> Generator[None, None, None]:
+        try:
+            yield from itertools.repeat(None)
+        finally:
+            ended.append(night.programme.failed)
+
+    night.programme._running[7] = procedure()
+    night.programme.records += [night.programme.records[0]] * 7
+    night.run(3)
+    assert night.programme.failed and ended == [True]

@@ -115,6 +115,7 @@ def test_one_thing_to_do(value: object, said: list[str]) -> None:
     ([7], FORMS, "the file: a list of 1 is neither a name nor null nor ?"),
     ({"go": 1}, FORMS, "the file: a block of fields is neither a name nor null nor ?"),
     ({"a": 0}, BLOCKS, "a: 0 is out of range; it must be at least 1"),
+    ({"a": 0, "b": 0}, BLOCKS, "a: 0 is out of range; it must be at least 1"),
     ({"b": 0}, BLOCKS, "unknown field 'b'; use one of a"),
     (7, BLOCKS, "the file: 7 is neither string nor object"),
     ([1, 10], LISTS, "1: 10 is out of range; it must be at most 9"),
@@ -142,3 +143,9 @@ def test_a_key_that_is_a_number_is_text() -> None:
     assert told({3: [{4: 0}]}, {"properties": {"3": {"items": {"properties": {"4": INTEGER}}}}}) == [
         "1: 3.0.4: 0 is out of range; it must be at least 1"
     ]
+
+
+def test_without_a_schema_it_is_that_of_scenarios_whatever_the_files_name() -> None:
+    with pytest.raises(ScenarioError) as caught:
+        check(Document(Path("a:b.yaml"), {"name": "x", "start_utc": "now"}, {(): 4}))
+    assert str(caught.value) == "a:b.yaml:4: the file: field 'steps' is missing"
