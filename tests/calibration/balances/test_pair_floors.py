@@ -178,7 +178,8 @@ def test_columns_of_two_windings_stand_one_after_the_other() -> None:
     columns = {"current_a": np.full(60, 1.0), "current_b": np.full(60, 2.0), "supply": np.full(60, 23.0)}
     frame: Any = Some(
         scale={"supply_V": 24.0, "counter_torque": 0.1}, get=columns.get,
-        filled=lambda name: (columns[name], None), one_clock=np.arange(60.0), t=np.arange(60.0), runs=[], run=np.zeros(60, dtype=int),
+        filled=lambda name: (columns[name], None), one_clock=np.arange(60.0), t=np.arange(60.0), runs=[],
+        run=np.zeros(60, dtype=int),
     )  # fmt: skip
     rows = np.arange(1, 60, 3)
     m: Any = Some(rows=rows, at=lambda full: full[rows])
