@@ -65,7 +65,7 @@ of this repository. Measured on {day}. How the finder decides: [calibration](../
   generalise. Of 42 other logs, met for the first time on 2026-11-27, 17 answers are right or hold the
   right class. Ten are half right, twelve say nothing or another domain, and three have a wrong name alone.
   Of 25 further ones eighteen are right or hold the right class. Four say `unknown` where a delay or nothing
-  more is there, and three have a wrong name alone. Then rules were mended, and 23 more were met.
+  more is there, and three have a wrong name alone. Then rules were corrected, and 23 more were met.
   Seventeen are right or hold the right class, five are `unknown`, four of them with nothing missing.
   One has a name that its truth lacks.
 
