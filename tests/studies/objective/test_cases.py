@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from bus.protocol import AxisParameter
 from plant.model import load
 from scenarios.studies.objective import cases, run_holds
 from scenarios.studies.objective.bench import Held
@@ -107,7 +108,7 @@ def test_each_case_runs_in_both_modes_from_every_start_with_every_seed(
     monkeypatch.setattr(cases, "hold", held)
     monkeypatch.setattr(cases, "parameters_of", lambda *_: {12: 7, 13: 8})
     options, told = ObjectiveOptions(starts=1, seeds=2, seconds=5.0), list[str]()
-    plain = Case("a", compensated=True, without=(cases.AxisParameter(12).name,))
+    plain = Case("a", compensated=True, without=(AxisParameter(12).name,))
     rows = list(
         measure([plain, Case("b"), Case("c", firmware="paper")], PLANTS, [(40, 1)], options, told.append)
     )
@@ -127,7 +128,7 @@ def test_each_case_runs_in_both_modes_from_every_start_with_every_seed(
 
 def objective(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, rows: list[Row], **given: object) -> int:
     """The command on rows that are given."""
-    monkeypatch.setattr(run_holds.table, "measure", lambda *_: iter(rows))
+    monkeypatch.setattr(cases, "measure", lambda *_: iter(rows))
     monkeypatch.setattr(run_holds, "bound", lambda *_: Bound(0.1, 0.1, 1.0, 9.0))
     options: dict[str, object] = {"out": tmp_path / "new", "only": cases.cases(False)[0].name}
     return run_holds.objective(ObjectiveOptions(**(options | given)))  # type: ignore[arg-type]
