@@ -31,6 +31,6 @@ class Commanded:
     def _log(self, rate: float, effort: float, seconds: float) -> Log:
         count = round(seconds / LOG_PERIOD_S)
         made = log_of(np.full(count, rate), np.full(count, effort))
-        t_s = (self.rows + np.arange(count)) * LOG_PERIOD_S
+        t_s = np.arange(self.rows, self.rows + count, dtype=np.float64) * LOG_PERIOD_S
         self.rows += count
         return Log(t_s, made.counts, made.effort, made.adc_a, made.adc_b, made.true_rate)
