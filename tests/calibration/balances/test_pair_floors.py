@@ -95,11 +95,8 @@ def test_a_motor_stands_where_no_count_came_for_longer() -> None:
     run = np.zeros(60, dtype=np.int64)
     assert np.flatnonzero(~standing(spin, run, 5)).tolist() == [0, *range(10, 18), *range(40, 46)]
     run[30:] = 1
-    assert np.flatnonzero(~standing(spin, run, 5)).tolist() == [
-        *range(10, 18),
-        *range(30, 36),
-        *range(40, 46),
-    ]
+    moving = [0, *range(10, 18), *range(30, 36), *range(40, 46)]
+    assert np.flatnonzero(~standing(spin, run, 5)).tolist() == moving
 
 
 def test_rows_off_the_wind_up_line_are_those_of_a_motor_that_left_its_teeth() -> None:
@@ -178,8 +175,8 @@ def test_columns_of_two_windings_stand_one_after_the_other() -> None:
     columns = {"current_a": np.full(60, 1.0), "current_b": np.full(60, 2.0), "supply": np.full(60, 23.0)}
     frame: Any = Some(
         scale={"supply_V": 24.0, "counter_torque": 0.1}, get=columns.get,
-        filled=lambda name: (columns[name], None), one_clock=np.arange(60.0), t=np.arange(60.0), runs=[],
-        run=np.zeros(60, dtype=int),
+        filled=lambda name: (columns[name], None), one_clock=np.arange(60.0),
+        t=np.arange(60.0), runs=[], run=np.zeros(60, dtype=int),
     )  # fmt: skip
     rows = np.arange(1, 60, 3)
     m: Any = Some(rows=rows, at=lambda full: full[rows])
