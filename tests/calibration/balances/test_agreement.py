@@ -13,7 +13,7 @@ from calibration.inputs.declaration import Column
 from tests.calibration.names.made import PERIOD_S, drive
 
 ROWS = 6000
-T = PERIOD_S * np.arange(ROWS)
+T: np.ndarray = PERIOD_S * np.arange(ROWS)
 PARTS = ((1.0, 2.0), (0.4, 3.7), (0.15, 11.0))  # amplitude, rad/s
 HELD = T > 45
 

@@ -9,7 +9,7 @@ from calibration.balances.candidate import Candidate, pairs_by_section, ramp, si
 from calibration.balances.problem import Problem, labels_of
 
 ROWS = 60
-T = np.arange(float(ROWS))
+T: np.ndarray = np.arange(float(ROWS))
 
 
 def candidate(**more: Any) -> Candidate:

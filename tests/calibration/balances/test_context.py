@@ -70,6 +70,7 @@ def test_travel_is_counted_from_the_last_change_of_direction_or_run() -> None:
 def test_between_its_turns_a_motion_never_goes_back_further_than_the_travel(
     steps: list[int], travel: int
 ) -> None:
+    steps = [0, 30, *steps]  # a first move that is one
     angle = np.cumsum(steps).astype(float)
     way = direction_of(angle, runs(len(steps)), float(travel))
     assert np.array_equal(direction_of(-angle, runs(len(steps)), float(travel)), -way)

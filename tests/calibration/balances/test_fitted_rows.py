@@ -16,7 +16,7 @@ FORCE, SENSOR = Response("force", "N"), Response("position2", "m")
 
 
 def chosen(rows: int, sigma: float = 0.0, response: Response = FORCE, **more: Any) -> View:
-    given = {k: more.pop(k) for k in ("stages", "analyse_period_s") if k in more}
+    given: dict[str, Any] = {k: more.pop(k) for k in ("stages", "analyse_period_s") if k in more}
     v = drive(0.001 * np.arange(rows), filter=Filter(sigma), response=response, rig=given, **more).view
     choose_rows(v)
     return v

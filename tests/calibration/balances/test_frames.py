@@ -110,7 +110,7 @@ def test_one_clock_is_that_of_the_runs_starts() -> None:
 
 @pytest.mark.parametrize("width", [1, 3, 5])
 def test_rates_of_a_parabola_are_exact_between_the_ends(width: int) -> None:
-    t = PERIOD_S * np.arange(100)
+    t: np.ndarray = PERIOD_S * np.arange(100)
     x, inner = 1.5 * t**2, slice(2 * width, -2 * width)
     assert rate_of(x, width, PERIOD_S)[inner] == pytest.approx(3 * t[inner])
     assert acceleration_of(x, width, PERIOD_S)[inner] == pytest.approx(3.0)

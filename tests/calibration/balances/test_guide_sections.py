@@ -44,7 +44,7 @@ def test_a_section_that_is_named_needs_three_frames(rows: int, kept: int) -> Non
 
 def test_quick_frames_are_averaged_over_cells_and_slow_ones_put_between_frames() -> None:
     quick = section(10)
-    grid = 5.0 + 3.0 * np.arange(4)
+    grid: np.ndarray = 5.0 + 3.0 * np.arange(4)
     # cells end halfway: 0 1 | 2 3 4 | 5 6 7 | 8 9
     assert guide._on_grid(quick, grid, 3.0) == pytest.approx([0.5, 3.0, 6.0, 8.5])
     quick.columns = {k: np.delete(x, [2, 3, 4]) for k, x in quick.columns.items()}

@@ -11,7 +11,7 @@ from tests.calibration.balances.test_effortchange import loop
 
 ROWS = 6000
 RNG = np.random.default_rng(1)
-X = RNG.standard_normal((ROWS, 2))
+X: np.ndarray = RNG.standard_normal((ROWS, 2))
 
 
 def limited(at: float, rate: np.ndarray | None = None, train: np.ndarray | None = None) -> list[float]:

@@ -10,7 +10,7 @@ from calibration.balances.noise import QUIET_PART, ROUNDING, column_noise, posit
 from plant.units import ARCSEC
 
 ROWS = 20_000
-T = np.arange(ROWS) / 100.0
+T: np.ndarray = np.arange(ROWS) / 100.0
 
 
 def white(size: float, seed: int = 1, rows: int = ROWS) -> np.ndarray:
@@ -49,7 +49,7 @@ def test_what_follows_the_sensor_through_a_loop_is_no_noise() -> None:
     """A command that answers the sensor over the last five rows; a sixth is not known of."""
     sensor = white(1.0)
     gains = (2.0, -1.0, 0.5, 0.2, 1.5)
-    answer = sum(g * np.roll(sensor, k) for k, g in enumerate(gains))
+    answer = np.sum([g * np.roll(sensor, k) for k, g in enumerate(gains)], axis=0)
     told = rough(answer + white(0.01, 2), 2, sensor)
     assert told == pytest.approx(0.01, rel=0.1)
     assert rough(answer + np.roll(sensor, 5), 2, sensor) > 0.3

@@ -13,9 +13,9 @@ from calibration.inputs.declaration import Response
 from tests.calibration.names.made import drive
 
 ROWS, NOISE, LINE = 12_000, 0.05, 0.2
-AT = np.arange(ROWS)
+AT: np.ndarray = np.arange(ROWS)
 FILES = np.repeat([0, 1], [7000, 5000])
-MOTION = 3 * np.sin(2 * np.pi * AT / 3000)
+MOTION: np.ndarray = 3 * np.sin(2 * np.pi * AT / 3000)
 FORCE = Response("force", "N", gain=-2.0)
 
 

@@ -1,5 +1,7 @@
 """Motion that repeats itself in time or stroke by stroke, and how much repeats differ."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -12,7 +14,7 @@ def sine(period: float, rows: int = 2000) -> np.ndarray:
     return np.asarray(np.sin(2 * np.pi * np.arange(rows) / period))
 
 
-def lag(x: np.ndarray, **more: np.ndarray) -> int:
+def lag(x: np.ndarray, **more: Any) -> int:
     return repeat_lag(drive(x, **more).view)
 
 
@@ -80,7 +82,7 @@ def test_wobbles_and_rests_are_no_strokes() -> None:
         one = np.arange(100.0) / 100
         there = np.concatenate([one, 1 - part * one, 1 - part + part * one, np.ones(100), 1 - one])
         x = 200.0 * np.tile(there, 4)
-        e = np.where(np.isin(np.arange(len(x)) // 100 % 5, (0, 4)), 1.0, 0.0) * (np.arange(len(x)) // 500)
+        e = np.where(np.isin(np.arange(len(x)) // 100 % 5, (0, 4)), 1.0, 0.0) * (np.arange(len(x)) // 500.0)
         return stroke_scatter(drive(x).view, e)
 
     alone, both = wobbling(0.2), wobbling(0.4)

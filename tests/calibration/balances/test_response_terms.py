@@ -13,8 +13,8 @@ from calibration.inputs.declaration import Column, Response
 from tests.calibration.names.made import PERIOD_S, back_and_forth, drive
 
 ROWS = 400
-T = PERIOD_S * np.arange(ROWS)
-X = 2.0 + np.sin(2 * np.pi * T / 2)
+T: np.ndarray = PERIOD_S * np.arange(ROWS)
+X: np.ndarray = 2.0 + np.sin(2 * np.pi * T / 2)
 FORCE = np.cos(T)
 INNER = slice(2, -2)
 

@@ -12,16 +12,16 @@ from calibration.balances.volts import Windings
 
 ROWS, PERIOD_S, V, R, K, COUNT_A = 4000, 0.01, 24.0, 2.0, 0.4, 0.01
 RNG = np.random.default_rng(1)
-T = PERIOD_S * np.arange(ROWS)
-DUTY = 0.4 + 0.3 * np.sin(T) + 0.05 * np.sin(17 * T)
-RATE = 5 + 3 * np.sin(0.7 * T)
+T: np.ndarray = PERIOD_S * np.arange(ROWS)
+DUTY: np.ndarray = 0.4 + 0.3 * np.sin(T) + 0.05 * np.sin(17 * T)
+RATE: np.ndarray = 5 + 3 * np.sin(0.7 * T)
 
 
 def problem(y: np.ndarray, base: np.ndarray, names: tuple[str, ...]) -> Problem:
     label = np.zeros(len(y), dtype=np.int64)
     return Problem(
         channel="E", unit="V", y=y, base=base, base_labels=[(name, "") for name in names],
-        t=PERIOD_S * np.arange(len(y)), run=label, session=label, valid=label == 0,
+        t=0.01 * np.arange(float(len(y))), run=label, session=label, valid=label == 0,
         held=np.arange(len(y)) % 100 > 80, period_s=PERIOD_S, ar_order=0, block_s=1.0,
     )  # fmt: skip
 

@@ -9,6 +9,7 @@ from scipy.stats import norm
 from calibration.balances import floors
 from calibration.balances.filters import Filter
 from calibration.balances.floors import floor_of, passed, resolved_rows, sensors_floor
+from calibration.balances.repeats import repeat_lag
 from calibration.inputs.declaration import Response
 from tests.calibration.names.made import PERIOD_S, back_and_forth, drive
 
@@ -69,7 +70,7 @@ def test_without_repeats_the_columns_tell_it_or_nothing_does() -> None:
 def test_a_repeat_is_one_of_fitted_rows(step: int, told: bool) -> None:
     """Of 1000 rows one is left by nines; six by sevens, a small part of fifty steps; and 13 by 21."""
     s = scene(sine(1000, 10_000))
-    assert floors.repeat_lag(s.view) == 1000
+    assert repeat_lag(s.view) == 1000
     s.view.rows = np.arange(0, 10_000, step)
     p = s.problem
     p.y, p.base, p.valid, p.held = (z[::step] for z in (p.y, p.base, p.valid, p.held))

@@ -14,8 +14,8 @@ from calibration.names.scene import Scene
 from tests.calibration.names.made import PERIOD_S, back_and_forth, drive
 
 ROWS = 4000
-X = back_and_forth(40, 100)
-T = PERIOD_S * np.arange(ROWS)
+X: np.ndarray = back_and_forth(40, 100)
+T: np.ndarray = PERIOD_S * np.arange(ROWS)
 TWO = np.repeat([0, 1], ROWS // 2)
 
 
@@ -113,7 +113,7 @@ def test_few_rows_tell_no_offset() -> None:
 
 LAW = FrictionLaw(stiction_ratio=1.8, stribeck_speed=0.5, stribeck_exponent=1.5)
 BRISTLES = FrictionLaw(1.8, 0.5, 1.5, bristle_travel=0.01)
-SPEED = np.linspace(-2, 2, 200)
+SPEED: np.ndarray = np.linspace(-2, 2, 200)
 
 
 def sliding(given: FrictionLaw) -> Sliding:

@@ -14,6 +14,7 @@ from calibration.balances.width import told_by_noise
 from calibration.errors import CalibrationInputError
 from calibration.inputs.declaration import Column, Response, Rig, Stage
 from calibration.inputs.run import Run
+from calibration.statistics.thresholds import SURE_Z
 from tests.calibration.names.made import drive
 
 PERIOD_S = 0.01
@@ -213,7 +214,7 @@ def test_a_noisy_position_does_not_tell_a_slow_motion() -> None:
     x = 1e-3 * np.sin(2 * np.pi * PERIOD_S * np.arange(6000) / 5) + 1e-4 * rng.standard_normal(6000)
     v = view_of([record(6000, position=x)], rig(smooth_s=0.4), FORCE)
     width = max(v.rates, told_by_noise(x, v.file, v.noise)) / 2
-    expected = made.SURE_Z * v.noise / PERIOD_S / np.sqrt(4 * np.sqrt(np.pi)) / width**1.5
+    expected = SURE_Z * v.noise / PERIOD_S / np.sqrt(4 * np.sqrt(np.pi)) / width**1.5
     assert v.slow == pytest.approx(expected)
 
 

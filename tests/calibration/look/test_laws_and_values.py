@@ -20,9 +20,9 @@ from calibration.names.scene import Scene
 from tests.calibration.names.made import PERIOD_S, back_and_forth, drive
 
 ROWS = 3000
-T = PERIOD_S * np.arange(ROWS)
-X = 2.0 + np.sin(2 * np.pi * T / 5) + 0.4 * np.sin(2 * np.pi * T / 1.3)
-RATE = np.gradient(X, PERIOD_S)
+T: np.ndarray = PERIOD_S * np.arange(ROWS)
+X: np.ndarray = 2.0 + np.sin(2 * np.pi * T / 5) + 0.4 * np.sin(2 * np.pi * T / 1.3)
+RATE: np.ndarray = np.gradient(X, PERIOD_S)
 OTHER = np.random.default_rng(1).standard_normal((ROWS, 1))
 
 

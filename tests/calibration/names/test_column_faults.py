@@ -17,7 +17,7 @@ from plant.units import ARCSEC
 
 ROWS, PERIOD_S, COUNT = 1000, 0.01, 0.5 * ARCSEC
 SCALES = {"position_arcsec_per_count": 0.5, "sample_period_s": PERIOD_S, "gear_ratio": 100.0}
-PATH = 300.0 * np.arange(ROWS)  # counts
+PATH: np.ndarray = 300.0 * np.arange(ROWS)  # counts
 
 
 def run(counts: np.ndarray, **more: Any) -> Run:
@@ -158,7 +158,7 @@ def test_lost_rows_are_a_share_with_whole_packets() -> None:
     share = found.parameters["packet_loss"]
     assert share.value == pytest.approx(0.005)
     half = 1.96 * np.sqrt(0.005 * 0.995 / 400)
-    assert (share.low, share.high) == (0.0, pytest.approx(0.005 + half))
+    assert share.low == 0.0 and share.high == pytest.approx(0.005 + half)
     assert found.note == "50 rows missing in 2 gaps (100 % of whole packets), 0 rows repeated"
     present[2000:2010] = False
     found = sample_loss.stamps(frame(1e-5 * np.arange(1e4), present))

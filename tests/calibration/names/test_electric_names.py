@@ -23,8 +23,8 @@ from calibration.names.scene import Scene
 from tests.calibration.names.made import PERIOD_S, drive
 
 ROWS, R, K, V = 2000, 2.0, 0.4, 24.0
-T = PERIOD_S * np.arange(ROWS)
-DUTY = 0.3 * np.sin(2 * np.pi * T / 7)
+T: np.ndarray = PERIOD_S * np.arange(ROWS)
+DUTY: np.ndarray = 0.3 * np.sin(2 * np.pi * T / 7)
 CURRENT, RATE = 1.5 * np.cos(T), 3.0 * np.sin(T / 2)
 FACTS = Facts("log", resistance=2.4, winding=2.0, per_ampere=140.0)
 
@@ -119,7 +119,7 @@ def test_a_winding_is_heated_by_its_own_loss() -> None:
     lag = first * np.exp(-T / 10.0)
     got = found[0].columns[:, 0] / (0.0039 * R**2 * np.where(CURRENT == 0, 1, CURRENT))
     assert np.minimum(np.abs(got - heat - lag), np.abs(got - heat)).max() < 0.03
-    assert found[0].sign == 1 and found[0].steps == (pytest.approx(0.5),)
+    assert found[0].sign == 1 and found[0].steps == pytest.approx((0.5,))
     apart = volts(since_run=T % 10.0)
     apart.problem.session = (T >= 10).astype(np.int64)
     files = winding_heating.columns(apart)

@@ -23,8 +23,8 @@ from calibration.names.scene import Scene
 from tests.calibration.names.made import PERIOD_S, drive
 
 ROWS = 2000
-T = PERIOD_S * np.arange(ROWS)
-X = 2.0 + np.sin(2 * np.pi * T / 5) + 0.3 * np.sin(2 * np.pi * T / 1.7)
+T: np.ndarray = PERIOD_S * np.arange(ROWS)
+X: np.ndarray = 2.0 + np.sin(2 * np.pi * T / 5) + 0.3 * np.sin(2 * np.pi * T / 1.7)
 BOTH = {"direction": np.sign(np.gradient(X))}
 
 
@@ -44,10 +44,10 @@ def test_a_late_sensor_falls_behind_by_its_rate_times_the_delay() -> None:
     declared = channel_delay.columns(sensors(-0.5))[0]
     assert declared.columns[:, 0] == pytest.approx(0.5 * rate)
     assert channel_delay.columns(sensors())[0].columns[:, 0] == pytest.approx(-rate)
-    assert [c.fixed["delay"] for c in late] == [(pytest.approx(k * PERIOD_S), "s") for k in (1, 2, 4, 8)]
+    assert [c.fixed["delay"][0] for c in late] == pytest.approx([k * PERIOD_S for k in (1, 2, 4, 8)])
     c = late[2]
     assert c.columns[4:, 0] == pytest.approx(X[:-4] - X[4:]) and not c.columns[0].any()
-    assert (c.steps, c.sign, c.searched) == ((pytest.approx(0.2 * PERIOD_S),), 1, 1)
+    assert c.steps == pytest.approx((0.2 * PERIOD_S,)) and (c.sign, c.searched) == (1, 1)
     assert c.labels == (("ratio", "m/m"),)
     assert c.shape is not None and not c.shape(np.array([-0.05])).any()
 
@@ -70,7 +70,7 @@ def test_a_delay_is_a_hundredth_of_the_log_at_most_and_of_sensors_alone() -> Non
 def test_a_late_column_is_told_with_its_interval() -> None:
     f = channel_delay.late_column("why", 0.03, 0.01, 0.5)
     p = f.parameters["delay"]
-    assert (p.value, p.low, p.high) == (0.03, pytest.approx(0.0104), pytest.approx(0.0496))
+    assert [p.value, p.low, p.high] == pytest.approx([0.03, 0.0104, 0.0496])
     assert f.evidence == pytest.approx(4.5 / np.log(10)) and (f.share, f.note) == (0.5, "why")
     wide = channel_delay.late_column("", 0.03, 0.01, reach=3.0)
     assert wide.parameters["delay"].high == pytest.approx(0.06) and wide.share == 1.0

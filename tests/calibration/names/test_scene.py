@@ -13,8 +13,8 @@ from calibration.names.scene import Scene, since_first
 from tests.calibration.names.made import PERIOD_S, back_and_forth, drive
 
 ROWS = 2000
-T = PERIOD_S * np.arange(ROWS)
-X = back_and_forth(20, 100, 2.0)
+T: np.ndarray = PERIOD_S * np.arange(ROWS)
+X: np.ndarray = back_and_forth(20, 100, 2.0)
 TWO = np.repeat([0, 1], ROWS // 2)
 
 
@@ -166,7 +166,7 @@ def test_a_search_begins_at_its_first_values() -> None:
 
     at = {"tau": (3.0, "s"), "motor": (1.0, "")}
     one = tried("brake_drag", shape, "torque", at=at)
-    assert one.steps == (pytest.approx(0.3),) and one.searched == 1 and one.columns[0, 0] == 3.0
+    assert one.steps == pytest.approx((0.3,)) and one.searched == 1 and one.columns[0, 0] == 3.0
     two = tried("brake_drag", shape, "torque", at=at, steps=(0.1, 0.2), searched=0)
     assert (two.columns[0, 0], two.searched, two.steps) == (4.0, 0, (0.1, 0.2))
     several = grid(

@@ -13,7 +13,7 @@ from calibration.names.scene import Scene
 from tests.calibration.names.made import drive
 
 ROWS = 6000
-X = 0.002 * np.arange(ROWS)  # 12 turns of a part with the period 1
+X: np.ndarray = 0.002 * np.arange(ROWS)  # 12 turns of a part with the period 1
 
 
 def scene(period: float | None = 1.0, x: np.ndarray = X, kind: str | None = None, **more: Any) -> Scene:
@@ -66,7 +66,7 @@ def test_a_tooth_is_found_on_its_part_with_minus_its_force() -> None:
     assert (c.order, c.least, c.domain) == (5.0, 14.0, "axis_angle") and c.labels == (("amplitude", "N"),)
     assert c.fixed["phase"][0] == pytest.approx(0.4, abs=0.007) and c.fixed["phase"][1] == "turn"
     width = c.fixed["width"][0]
-    assert c.steps == (0.003, pytest.approx(0.1 * width)) and c.searched == 2
+    assert c.steps == pytest.approx((0.003, 0.1 * width)) and c.searched == 2
     at = c.fixed["phase"][0]
     away = np.abs((X - at + 0.5) % 1.0 - 0.5)
     inside = away < 0.4 * width

@@ -15,7 +15,7 @@ from calibration.names.unknown_alone import alone
 from tests.calibration.names.made import back_and_forth, drive
 
 ROWS = 4000
-X = 1.0 + 3.0 * back_and_forth(4, 1000, 2.0)  # units of which a turn has eight
+X: np.ndarray = 1.0 + 3.0 * back_and_forth(4, 1000, 2.0)  # units of which a turn has eight
 FACTS = Facts("log", middle=0.5, supply=24.0, half_play=0.01)
 
 
@@ -128,7 +128,7 @@ def test_shapes_alone_are_an_end_stop_and_a_bent_torque_or_a_dent() -> None:
     assert up.fixed["begin"][0] == pytest.approx(low + 0.5 * span)
     assert up.columns[:, 0] == pytest.approx(np.maximum(X - low - 3.0, 0) ** 2 / span**2)
     assert down.columns[:, 0] == pytest.approx(-(np.maximum(low + 3.0 - X, 0) ** 2) / span**2, abs=1e-9)
-    assert up.positive == (0,) and up.steps == (pytest.approx(0.06),)
+    assert up.positive == (0,) and up.steps == pytest.approx((0.06,))
     assert len(alone(scene())) == 10  # of a force no iron
     assert alone(scene(dynamic=False)) == [] == alone(scene(response=Response("acceleration", "m/s2")))
     assert alone(scene(slow_offset=0)) == [] == alone(scene(ok=np.zeros(ROWS, dtype=bool)))
@@ -144,7 +144,7 @@ def test_a_dent_is_a_bell_at_a_place_of_the_travel() -> None:
     )
     bell = np.exp(-0.5 * ((X - 1 - 6 * 10.5 / 25) / 0.3) ** 2)
     assert c.columns[:, 0] == pytest.approx(bell, abs=1e-12)
-    assert c.steps == (pytest.approx(0.06), pytest.approx(0.03)) and c.domain == "axis_angle"
+    assert c.steps == pytest.approx((0.06, 0.03)) and c.domain == "axis_angle"
     assert c.shape is not None
     narrow = c.shape(np.array([4.0, 0.0]))[:, 0]
     assert narrow == pytest.approx(np.exp(-0.5 * ((X - 4) / 0.006) ** 2), abs=1e-12)
@@ -154,7 +154,7 @@ def test_a_rate_moves_within_its_cell_and_not_to_a_stage_s() -> None:
     low, high = between(1.0, np.array([5.0]), 10.0)
     assert low < 1.0 < high
     near = between(1.0, np.array([0.96, 1.05]), 10.0)
-    assert near == (pytest.approx(0.96 + 0.035), pytest.approx(1.05 - 0.035))
+    assert near == pytest.approx((0.96 + 0.035, 1.05 - 0.035))
     assert between(1.0, np.array([1.01]), 10.0)[1] >= between(1.0, np.array([1.01]), 10.0)[0]
 
 
