@@ -111,6 +111,12 @@ def test_doors_are_looked_at_at_each_tick_of_50_ms_and_at_the_end(desk: Desk) ->
     assert not desk.served.entry.running
 
 
+def test_a_span_is_in_ns(desk: Desk) -> None:
+    desk.say(client := desk.client(), "step 100 s")
+    assert desk.steps.goal_ns() == 100_000_000_000
+    desk.steps.leave(client)
+
+
 def test_a_step_of_nothing_is_answered_and_none_goes_back(desk: Desk) -> None:
     client = desk.client()
     desk.say(client, "step 0 s")
