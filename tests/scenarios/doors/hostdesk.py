@@ -83,7 +83,7 @@ class Desk:
             drop=lambda name, _: self.dropped.append(name),
         )
         network = SimpleNamespace(boards={"A": 0}, devices=("A",))
-        self.served: Any = SimpleNamespace(
+        served: Any = SimpleNamespace(
             scenario="s", model="m", network=network, lines=lines,
             usb=SimpleNamespace(plug=lambda name: self.plug),
             pacer=SimpleNamespace(speed=1.0), steps=None, now_ns=11,
@@ -100,9 +100,9 @@ class Desk:
         monkeypatch.setattr(host_door, "Pipe", lambda: (self.pipe, Pipe()))
         monkeypatch.setattr(host_door, "select", SimpleNamespace(poll=lambda: poll, POLLIN=1))
         monkeypatch.setattr(host_door, "monotonic", lambda: self.clock)
-        monkeypatch.setattr(host_door.subprocess, "Popen", self.start)
+        monkeypatch.setattr(subprocess, "Popen", self.start)
         options: Any = "options"
-        self.door = HostProcess(self.served, options, self.said.append)
+        self.served, self.door = served, HostProcess(served, options, self.said.append)
 
     def start(self, command: list[str], **more: Any) -> Any:
         self.started += 1
@@ -127,4 +127,5 @@ class Desk:
 
     def take(self, *flags: bool) -> None:
         """The host is through with its slice."""
-        self.pipe.said.append(messages.Taken(*(flags or (False, False, False)), [("the host", "moves")]))
+        watching, recording, looking = flags or (False, False, False)
+        self.pipe.said.append(messages.Taken(watching, recording, looking, [("the host", "moves")]))

@@ -102,7 +102,7 @@ def test_a_kind_of_fault_names_what_has_to_be_given(served: Any) -> None:
         Parameter("every", "how often", "time", default="", low=0.5),
         Parameter("load", "of the time", "fraction", default=0.5, low=0.0, high=1.0),
     )
-    kind = Kind("bus", "noise", "it hums", parameters, lambda *_: None, one_of=("every",))  # type: ignore[arg-type,return-value]
+    kind = Kind("bus", "noise", "it hums", parameters, lambda *_: None, one_of=("every",))  # type: ignore[arg-type]
     served.faults.kinds = lambda: [kind]
     (found,) = EmulatedBus(served).fault_kinds()
     assert found[:4] == ("noise", "bus", "it hums", "node= every=")

@@ -9,7 +9,7 @@ import pytest
 
 from scenarios.doors import loop
 from scenarios.doors.loop import AHEAD, NOT_GRANTED, Loop, first
-from tests.scenarios.doors.served import StubServed
+from tests.scenarios.doors.served import stub_served
 
 S = 1_000_000_000
 TEXT = "0.0 s simulated, bus load 25.0%, no input"
@@ -22,7 +22,7 @@ class Desk:
         self.clock, self.shown, self.said = 100.0, list[str](), list[str]()
         self.polled: list[int] = []
         self.flushed: list[float] = []
-        self.served: Any = StubServed()
+        self.served = stub_served()
         self.served.pacer.slips, self.served.pacer.slipped_s = 0, 0.0
         self.steps: list[Any] = []
         self.served.pacer.run = lambda each_slice: self.steps.append(each_slice)

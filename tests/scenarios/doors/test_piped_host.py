@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from host.camera.models import CAMERAS
 from host.console.views import BusState
 from scenarios.doors import piped_host
 from scenarios.doors.pipe_messages import Slice, Taken
@@ -49,7 +50,12 @@ def options(**more: Any) -> Any:
 
 def test_cameras_are_there_with_an_alpaca_door_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     made: list[tuple[Any, ...]] = []
-    monkeypatch.setattr(piped_host, "Camera", lambda *each: made.append(each) or each)
+
+    def make(*each: Any) -> Any:
+        made.append(each)
+        return each
+
+    monkeypatch.setattr(piped_host, "Camera", make)
     monkeypatch.setattr(piped_host, "SyntheticSky", lambda: "a sky")
     monkeypatch.setattr(piped_host, "from_file", lambda file: f"stars of {file}")
     scenario: Any = SimpleNamespace(site="site", clock="clock", seed=4)
@@ -57,7 +63,7 @@ def test_cameras_are_there_with_an_alpaca_door_alone(monkeypatch: pytest.MonkeyP
     guiding: Any = SimpleNamespace(frame=seen.append)
     assert cameras(scenario, options(asked={}), None) == ()
     found: Any = cameras(scenario, options(), guiding)
-    assert len(found) == len(piped_host.CAMERAS) and found[0][1:5] == ("a sky", "site", "clock", 4)
+    assert len(found) == len(CAMERAS) and found[0][1:5] == ("a sky", "site", "clock", 4)
     found[0][5]("frame")
     assert seen == ["frame"]
     bare: Any = cameras(scenario, options(stars="file"), None)
@@ -102,23 +108,22 @@ class Desk:
 
     def __init__(self, *says: Any) -> None:
         self.pipe, self.calls = Pipe(*says), list[tuple[Any, ...]]()
-        self.made: Any = object.__new__(PipedHost)
+        made: Any = object.__new__(PipedHost)
         self.camera = SimpleNamespace(looking=False, take=lambda look: self.calls.append(("look", look)))
-        self.made._pipe, self.made._now_ns = self.pipe, 0
-        self.made._sending = Lock()
+        made._pipe, made._now_ns = self.pipe, 0
+        made._sending = Lock()
         self.errors = SimpleNamespace(errors=0)
-        self.made.pc = SimpleNamespace(
+        made.pc = SimpleNamespace(
             link=SimpleNamespace(receive=lambda *each: self.calls.append(("report", *each))),
             cameras=(self.camera,), poll=lambda t_ns: self.calls.append(("tick", t_ns)), journal=self.errors,
             telescope=SimpleNamespace(snapshot=SimpleNamespace(activity="tracks")),
         )  # fmt: skip
-        self.made._mirror = BusMirror([], [], self.pipe.send)
-        self.made.runs = SimpleNamespace(
-            recording=True, receive=lambda *each: self.calls.append(("line", *each))
-        )
-        self.made.keepers = [SimpleNamespace(door=SimpleNamespace(name="--lx200 1", state=lambda: "busy"))]
-        self.made.poll = lambda now_ns: self.calls.append(("doors", now_ns))
-        self.made.close = lambda: self.calls.append(("close",))
+        made._mirror = BusMirror([], [], self.pipe.send)
+        made.runs = SimpleNamespace(recording=True, receive=lambda *each: self.calls.append(("line", *each)))
+        made.keepers = [SimpleNamespace(door=SimpleNamespace(name="--lx200 1", state=lambda: "busy"))]
+        made.poll = lambda now_ns: self.calls.append(("doors", now_ns))
+        made.close = lambda: self.calls.append(("close",))
+        self.made = made
 
 
 TOLD = [("the host", "tracks"), ("--lx200 1", "busy")]
@@ -180,7 +185,7 @@ class Side:
         self.calls: list[str] = []
         if settings == "bad":
             raise ValueError("no catalogue")
-        made.append(self)
+        sides.append(self)
 
     def open(self) -> None:
         if self.error:
@@ -193,7 +198,7 @@ class Side:
         self.calls.append("close")
 
 
-made: list[Side] = []
+sides: list[Side] = []
 
 
 @pytest.mark.parametrize(
@@ -208,12 +213,17 @@ def test_the_process_says_why_it_did_not_open(
     heard: list[Any],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    made.clear()
+    sides.clear()
     pipe = Pipe(*([] if settings is None else [settings]))
     numbers: list[int] = []
-    monkeypatch.setattr(piped_host, "Connection", lambda number: numbers.append(number) or pipe)
+
+    def connection(number: int) -> Pipe:
+        numbers.append(number)
+        return pipe
+
+    monkeypatch.setattr(piped_host, "Connection", connection)
     monkeypatch.setattr(piped_host, "PipedHost", Side)
     monkeypatch.setattr(Side, "error", error)
     main(5)
     assert numbers == [5] and pipe.heard == heard
-    assert [each.calls for each in made] == ([] if calls is None else [calls])
+    assert [each.calls for each in sides] == ([] if calls is None else [calls])

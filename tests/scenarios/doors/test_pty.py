@@ -28,9 +28,10 @@ class Line:
     """A port and its feed; taken: what a program has sent."""
 
     def __init__(self, link: Path) -> None:
-        self.feed: Any = Source()
+        feed: Any = Source()
+        self.feed = feed
         self.taken: list[bytes] = []
-        self.port = PtyPort(link, self.feed, self.taken.append)
+        self.port = PtyPort(link, feed, self.taken.append)
 
     def look(self, data: bytes = b"") -> None:
         poll = select.poll()

@@ -10,7 +10,7 @@ import pytest
 
 from scenarios.doors import replay
 from scenarios.doors.recording import ENTERED, SESSION
-from tests.scenarios.doors.served import StubServed
+from tests.scenarios.doors.served import stub_served
 
 S = 1_000_000_000
 
@@ -21,7 +21,7 @@ class Session:
     def __init__(self, folder: Path, text: str) -> None:
         self.folder = folder
         (folder / ENTERED).write_text(text)
-        self.served: Any = StubServed()
+        self.served = stub_served()
         self.entered: list[tuple[int, str, bytes]] = []
         self.served.entry.enter = self.enter
 
@@ -94,8 +94,8 @@ def test_a_file_that_is_not_there_is_said(tmp_path: Path) -> None:
 
 
 def test_a_second_is_gone_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
-    served: Any = StubServed()
-    shown: list[tuple[int | None, str]] = []
+    served = stub_served()
+    shown: list[tuple[float | None, str]] = []
     replay._go(served, 2 * S + 1, 3 * S, lambda done, text: shown.append((done, text)))
     assert shown == [(S, "1 s simulated"), (2 * S, "2 s simulated"), (2 * S + 1, "2 s simulated")]
     shown.clear()
@@ -106,7 +106,7 @@ def test_a_second_is_gone_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_nodes_of_doors_to_CAN_are_made_once_in_their_order() -> None:
-    served: Any = StubServed()
+    served = stub_served()
     replay._nodes(served, {"kinds": ["can3", "usb", "can0", "can3", "can123", "xcan1", "can12"]})
     assert served.nodes == [3, 0, 12]
 
@@ -130,7 +130,7 @@ def test_the_rest_is_compared_with_that_of_the_same_snapshot(
     t_ns: int, entries: int, found: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     facts = {"kinds": [], "snapshots": {"a": {"t_ns": 5, "entries": 2, "rest": "a rest"}}}
-    served: Any = StubServed()
+    served = stub_served()
     served.now_ns = t_ns
     entered: list[int] = []
     monkeypatch.setattr(replay, "_facts", lambda folder: facts)

@@ -1,41 +1,56 @@
-"""A client that steps time, over a socket pair: its lines, the server's answers, and what cannot be."""
+"""A client that steps time, over a stub connection: its lines, the answers, and what cannot be."""
 
 import socket
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
 
 from bus.can import Frame
-from scenarios.doors import stepped
 from scenarios.doors.stepped import Stepped, tell
 
 
 class Server:
-    """The far end: answers are put there before they are asked for."""
+    """A connection of which the answers are known; heard: the lines it was told."""
 
-    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.near, self.far = socket.socketpair()
+    def __init__(self) -> None:
         self.asked: list[tuple[Any, ...]] = []
-        monkeypatch.setattr(stepped.socket, "create_connection", self.connect)
+        self.answers: list[str] = []
+        self.heard: list[str] = []
+        self.waits: list[float | None] = []
+        self.closed = 0
 
-    def connect(self, *each: Any) -> socket.socket:
+    def connect(self, *each: Any) -> "Server":
         self.asked.append(each)
-        return self.near
+        return self
+
+    def settimeout(self, seconds: float | None) -> None:
+        self.waits.append(seconds)
+
+    def makefile(self, mode: str, encoding: str, newline: str) -> "Server":
+        assert (mode, encoding, newline) == ("rw", "utf-8", "\n")
+        return self
+
+    def write(self, text: str) -> None:
+        self.heard.append(text)
+
+    def flush(self) -> None:
+        self.heard[-1] = self.heard[-1].removesuffix("\n")
+
+    def readline(self) -> str:
+        return f"{self.answers.pop(0)}\n" if self.answers else ""
+
+    def close(self) -> None:
+        self.closed += 1
 
     def answer(self, *lines: str) -> None:
-        self.far.sendall("".join(f"{line}\n" for line in lines).encode())
-
-    def heard(self) -> list[str]:
-        return self.far.recv(65536).decode().splitlines()
+        self.answers += lines
 
 
 @pytest.fixture
-def server(monkeypatch: pytest.MonkeyPatch) -> Iterator[Server]:
-    found = Server(monkeypatch)
-    yield found
-    found.near.close()
-    found.far.close()
+def server(monkeypatch: pytest.MonkeyPatch) -> Server:
+    found = Server()
+    monkeypatch.setattr(socket, "create_connection", found.connect)
+    return found
 
 
 def test_it_joins_listens_and_steps(server: Server) -> None:
@@ -44,15 +59,15 @@ def test_it_joins_listens_and_steps(server: Server) -> None:
         assert server.asked == [(("host", 7411), 5.0)] and client.now_ns == 0
         assert client.step("5 ms") == [(1_500_000, Frame(0x11, b"\5"))] and client.now_ns == 5_000_000
         client.send(0x22, b"\1\2")
-    assert server.heard() == ["join 2 dome", "listen", "step 5 ms", "send 022#0102"]
-    assert server.near.fileno() == -1
+    assert server.heard == ["join 2 dome", "listen", "step 5 ms", "send 022#0102"]
+    assert server.closed == 2  # the stream and its socket
 
 
 def test_one_client_is_waited_for_and_a_token_comes_first(server: Server) -> None:
     server.answer("ok", "ok", "ok")
     with Stepped("7411", token="word"):
-        assert server.near.gettimeout() is None
-        assert server.heard() == ["token word", "join 1 ", "listen"]
+        assert server.waits == [None]
+        assert server.heard == ["token word", "join 1 ", "listen"]
 
 
 def test_who_only_talks_does_not_join_and_a_refusal_is_an_error(server: Server) -> None:
@@ -61,28 +76,15 @@ def test_who_only_talks_does_not_join_and_a_refusal_is_an_error(server: Server) 
         assert client.ask("speed 2") == "speed 2"
         with pytest.raises(ValueError, match=r"^no such thing$"):
             client.ask("dance")
-        server.far.shutdown(socket.SHUT_WR)
         with pytest.raises(ValueError, match=r"^the server has gone$"):
             client.ask("status")
 
 
 @pytest.mark.parametrize(("command", "seconds"), [("status", 60.0), ("step 5ms", None), ("join 2", None)])
 def test_a_command_is_told_and_answered(server: Server, command: str, seconds: float | None) -> None:
-    waited: list[float | None] = []
-    ask = Stepped.ask
-
-    def watched(client: Stepped, line: str) -> str:
-        waited.append(client._socket.gettimeout())
-        return ask(client, line)
-
-    patch = pytest.MonkeyPatch()
-    patch.setattr(Stepped, "ask", watched)
     server.answer("ok  yes ")
-    try:
-        assert tell(f"{command} ", "7411", token="") == "yes"
-    finally:
-        patch.undo()
-    assert server.heard() == [command] and waited == [seconds]
+    assert tell(f"{command} ", "7411", token="") == "yes"
+    assert server.heard == [command] and server.waits == [None, seconds]
 
 
 @pytest.mark.parametrize(
@@ -100,7 +102,7 @@ def test_what_went_wrong_is_one_line(error: Exception, said: str, monkeypatch: p
     def refuse(*_: Any, **__: Any) -> Any:
         raise error
 
-    monkeypatch.setattr(stepped.socket, "create_connection", refuse)
+    monkeypatch.setattr(socket, "create_connection", refuse)
     with pytest.raises(ValueError) as caught:
         tell("status", "7411")
     assert str(caught.value) == said

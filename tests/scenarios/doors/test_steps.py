@@ -6,7 +6,7 @@ import pytest
 
 from bus.can import Frame
 from scenarios.doors.steps import NODE, Steps
-from tests.scenarios.doors.served import StubClient, StubServed
+from tests.scenarios.doors.served import StubClient, stub_served
 
 MS = 1_000_000
 USAGE = "^join N \\[NAME\\] \\| listen \\| send ID#DATA \\| step 5ms$"
@@ -16,7 +16,7 @@ class Desk:
     """Steps over a stub network."""
 
     def __init__(self) -> None:
-        self.served: Any = StubServed()
+        self.served = stub_served()
         self.steps = Steps(self.served)
 
     def client(self) -> Any:
