@@ -92,7 +92,7 @@ def test_E14_takes_40_samples_that_end_20_before_the_axis_goes(
     """A current of 5 A times the duty, but for the last five of these samples."""
     rows = np.arange(size)
     rate = np.where(rows >= (size if gone_at is None else gone_at), 21.0, 19.9) * COUNT_RATE
-    effort = 300.0 + rows
+    effort = np.asarray(300.0 + rows, dtype=np.float64)
     inside = (rows >= end - 40) & (rows < end)
     lead = effort / 3000.0
     ripple = drive(HIGH).ripple * lead * (1.0 - lead)
