@@ -88,3 +88,8 @@ class StubServed:
 
     def run_until(self, t_ns: int) -> None:
         self.now_ns = t_ns
+
+
+def stub_served() -> Any:
+    """A new one."""
+    return StubServed()

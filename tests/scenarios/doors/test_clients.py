@@ -175,6 +175,7 @@ def test_clients_come_are_heard_and_go(door: Door) -> None:
     assert known.all == [first] and known.lost == 7 and known.came == 2
     known.close()
     known.close()
+    assert door.listener.fileno() == -1
     assert known.all == [] and first.gone and known.lost == 7
     assert known.accept() == []
 
@@ -202,9 +203,9 @@ def test_an_address_that_cannot_be_listened_on_is_named(monkeypatch: pytest.Monk
     def none(*_: Any, **__: Any) -> Any:
         raise OSError(98, "Address already in use")
 
-    monkeypatch.setattr(clients.socket.socket, "bind", none)
+    monkeypatch.setattr(socket.socket, "bind", none)
     with pytest.raises(OSError, match=r"^127\.0\.0\.1:7411 cannot be listened on: Address already in use$"):
         clients.listen("127.0.0.1", 7411)
-    monkeypatch.setattr(clients.socket, "getaddrinfo", none)
+    monkeypatch.setattr(socket, "getaddrinfo", none)
     with pytest.raises(OSError, match=r"^127\.0\.0\.1:7411 cannot be used: "):
         clients.listen("127.0.0.1", 7411)

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from scenarios.doors.control import STEPPING, TOKEN_VARIABLE, ControlDoor
-from tests.scenarios.doors.served import StubClient, StubClients, StubServed
+from tests.scenarios.doors.served import StubClient, StubClients, stub_served
 
 FAR = "192.0.2.7"  # TEST-NET-1: another machine's
 
@@ -16,9 +16,10 @@ class Desk:
     """A control door with a client of this machine."""
 
     def __init__(self, peer: str = "127.0.0.1", token: str | None = "word") -> None:
-        self.served: Any = StubServed()
-        self.door: Any = ControlDoor("7411", token, self.served)
-        self.clients = self.door._clients = StubClients()
+        self.served = stub_served()
+        door: Any = ControlDoor("7411", token, self.served)
+        self.door, self.clients = door, StubClients()
+        door._clients = self.clients
         self.client = self.come(peer)
 
     def come(self, peer: str) -> StubClient:
@@ -104,7 +105,14 @@ def test_a_snapshot_goes_by_its_name_or_none(desk: Desk) -> None:
 def test_status_is_in_seconds_and_ms(desk: Desk) -> None:
     desk.served.now_ns = 2_500_000_000
     found = json.loads(desk("status").removeprefix("ok "))
-    known = {"simulated_s": 2.5, "speed": 1.0, "paused": False, "late_ms": 4.0, "slips": 2, "bus_load": 0.25}
+    known: dict[str, Any] = {
+        "simulated_s": 2.5,
+        "speed": 1.0,
+        "paused": False,
+        "late_ms": 4.0,
+        "slips": 2,
+        "bus_load": 0.25,
+    }
     known |= {"frames": 7, "boards": {"FOCUS": True, "DISPLAY": False}}
     assert found == known | {"ticks": 0, "on_time": None, "late_999_ms": None, "worst_ms": None}
     desk.served.punctual.ticks = 1
@@ -152,7 +160,7 @@ def test_the_state_tells_who_was_refused() -> None:
 
 
 def test_a_name_has_the_token_where_it_was_made_up(monkeypatch: pytest.MonkeyPatch) -> None:
-    served: Any = StubServed()
+    served = stub_served()
     monkeypatch.delenv(TOKEN_VARIABLE, raising=False)
     made = ControlDoor(f"{FAR}:7411", None, served)
     assert made.name == f"--control {FAR}:7411 (token {made.token})" and len(made.token) >= 16

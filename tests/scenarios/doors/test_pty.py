@@ -24,19 +24,29 @@ class Source:
         return data
 
 
+def read(number: int, count: int) -> bytes:
+    """So many bytes, however long the kernel takes for them."""
+    found = b""
+    while len(found) < count and select.select([number], [], [], 5.0)[0]:
+        found += os.read(number, count)
+    return found
+
+
 class Line:
     """A port and its feed; taken: what a program has sent."""
 
     def __init__(self, link: Path) -> None:
-        self.feed: Any = Source()
+        feed: Any = Source()
+        self.feed = feed
         self.taken: list[bytes] = []
-        self.port = PtyPort(link, self.feed, self.taken.append)
+        self.port = PtyPort(link, feed, self.taken.append)
 
-    def look(self, data: bytes = b"") -> None:
+    def look(self, data: bytes = b"", wait_ms: int = 0) -> None:
+        """wait_ms: until something is there; the kernel hands bytes over when it likes."""
         poll = select.poll()
         poll.register(self.port.number, select.POLLIN)
         self.feed.data = data
-        self.port.poll(0, dict(poll.poll(0)).get(self.port.number, 0))
+        self.port.poll(0, dict(poll.poll(wait_ms)).get(self.port.number, 0))
 
     def reader(self) -> int:
         return os.open(self.port.link, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
@@ -53,29 +63,33 @@ def test_a_reader_hears_what_comes_while_it_has_the_port_open(line: Line) -> Non
     line.look(b"before")
     number = line.reader()
     line.look(b"\x00\x0a\xff")  # raw: nothing is translated
-    assert os.read(number, 100) == b"\x00\x0a\xff"
+    assert read(number, 3) == b"\x00\x0a\xff"
     assert (line.port.heard, line.port.lost, line.port.in_use) == (3, 0, True)
     os.write(number, b"\x03ask\n")
-    line.look()
+    line.look(wait_ms=5000)
     assert line.taken == [b"\x03ask\n"]
     os.close(number)
     line.look(b"gone")
     assert not line.port.in_use and line.port.heard == 3
     number = line.reader()
     line.look(b"new")
-    assert os.read(number, 100) == b"new"
+    assert read(number, 3) == b"new"
     os.close(number)
 
 
-def test_what_the_last_reader_left_is_not_for_the_next(line: Line) -> None:
+def test_what_the_last_reader_left_is_nobody_s(line: Line) -> None:
     number = line.reader()
-    line.look(b"old")
+    line.look()
+    os.write(number, b"left")
+    assert select.select([line.port.number], [], [], 5.0)[0]
     os.close(number)
     line.look()
     number = line.reader()
     line.look()
-    with pytest.raises(BlockingIOError):
-        os.read(number, 100)
+    assert line.taken == []
+    os.write(number, b"new")
+    line.look(wait_ms=5000)
+    assert line.taken == [b"new"]
     os.close(number)
 
 
@@ -95,13 +109,18 @@ def test_a_line_without_a_receiver_drops_what_is_sent(tmp_path: Path) -> None:
     source: Any = Source()
     port = PtyPort(tmp_path / "X", source)
     number = os.open(port.link, os.O_RDWR | os.O_NOCTTY)
-    os.write(number, b"abc")
-    port.poll(0, select.POLLIN)
     port.poll(0, 0)
+    os.write(number, b"abc")
+    assert select.select([port.number], [], [], 5.0)[0]
+    port.poll(0, select.POLLIN)
+    with pytest.raises(BlockingIOError):
+        os.read(port.number, 1)  # it has been read
     os.close(number)
     port._swallow()
     port.close()
     assert not (tmp_path / "X").is_symlink()
+    with pytest.raises(OSError):
+        os.fstat(port.number)
 
 
 def test_a_link_of_an_earlier_run_is_replaced_and_a_file_is_not(tmp_path: Path) -> None:
@@ -145,12 +164,13 @@ def test_a_folder_has_a_port_for_each_board(tmp_path: Path) -> None:
     number = os.open(tmp_path / "a" / "ports" / "A", os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
     live.sources["A"].data = b"abcd"
     door.poll(0)
-    assert os.read(number, 10) == b"abcd"
+    assert read(number, 4) == b"abcd"
     os.close(number)
     door.ports[0].lost = 3
     assert "4 bytes read at A" in door.state() and "3 bytes lost by slow readers" in door.state()
     door.close()
     door.close()
+    assert door._poll.poll(0) == []
     assert os.listdir(tmp_path / "a" / "ports") == []
     assert sorted(name for name, _ in live.dropped) == ["A", "B"]
     door.open()
@@ -177,8 +197,9 @@ def test_a_debug_port_speaks_both_ways(tmp_path: Path) -> None:
     number = os.open(tmp_path / "A", os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
     live.port.sink(0, b"ok\r")
     door.poll(0)
-    assert os.read(number, 10) == b"ok\r"
+    assert read(number, 3) == b"ok\r"
     os.write(number, b"V\r")
+    assert select.select([door.ports[0].number], [], [], 5.0)[0]
     door.poll(0)
     assert live.said == [("A", b"V\r")]
     os.close(number)

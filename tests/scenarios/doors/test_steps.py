@@ -6,7 +6,7 @@ import pytest
 
 from bus.can import Frame
 from scenarios.doors.steps import NODE, Steps
-from tests.scenarios.doors.served import StubClient, StubServed
+from tests.scenarios.doors.served import StubClient, stub_served
 
 MS = 1_000_000
 USAGE = "^join N \\[NAME\\] \\| listen \\| send ID#DATA \\| step 5ms$"
@@ -16,7 +16,7 @@ class Desk:
     """Steps over a stub network."""
 
     def __init__(self) -> None:
-        self.served: Any = StubServed()
+        self.served = stub_served()
         self.steps = Steps(self.served)
 
     def client(self) -> Any:
@@ -109,6 +109,12 @@ def test_doors_are_looked_at_at_each_tick_of_50_ms_and_at_the_end(desk: Desk) ->
     desk.say(client, "step 120ms")
     assert desk.go() == [0, 50 * MS, 100 * MS, 120 * MS]
     assert not desk.served.entry.running
+
+
+def test_a_span_is_in_ns(desk: Desk) -> None:
+    desk.say(client := desk.client(), "step 100 s")
+    assert desk.steps.goal_ns() == 100_000_000_000
+    desk.steps.leave(client)
 
 
 def test_a_step_of_nothing_is_answered_and_none_goes_back(desk: Desk) -> None:

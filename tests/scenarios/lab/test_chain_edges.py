@@ -58,19 +58,19 @@ class Rig:
             for k, axis in enumerate(ENDS, 1)
         }
         wire = SimpleNamespace(tap=self.taps.append, untap=self.taps.remove)
-        self.network: Any = SimpleNamespace(plant=plant, boards=self.boards, queue=self.queue, wire=wire)
+        network: Any = SimpleNamespace(plant=plant, boards=self.boards, queue=self.queue, wire=wire)
 
         class Stage:
             def __init__(stage, _network: Any, axis: str, _evidence: Any, t_ns: int) -> None:
-                stage.axis = axis  # type: ignore[attr-defined]
+                stage.axis = axis
                 self.cuts.append(axis)
 
             def clear(stage, t_ns: int) -> None:
-                self.cuts.remove(stage.axis)  # type: ignore[attr-defined]
+                self.cuts.remove(stage.axis)
 
         monkeypatch.setattr(chain, "_Unsupplied", Stage)
         watched: Any = {name: self.boards[name] for name in guards}
-        self.chain = Chain(self.network, ENDS, watched)
+        self.network, self.chain = network, Chain(network, ENDS, watched)
         self.chain.told = lambda t_ns, text: self.told.append((t_ns, text))
 
     def say(self, axis: str, mode: AxisMode, identifier: int | None = None) -> None:
@@ -191,7 +191,12 @@ def test_switches_stand_halfway_between_limits_and_stops(
 ) -> None:
     """Soft limits of -1 and 2 rad, stops at -2 and 3; declination's board is none with a timer."""
     made: list[Any] = []
-    monkeypatch.setattr(chain, "Chain", lambda *each: made.append(each) or "a chain")
+
+    def make(*each: Any) -> str:
+        made.append(each)
+        return "a chain"
+
+    monkeypatch.setattr(chain, "Chain", make)
     stops = SimpleNamespace(low=SimpleNamespace(si=-2.0), high=SimpleNamespace(si=3.0))
     board = object.__new__(PeriodicBoard)
     board.name = "AXIS_RA"

@@ -11,6 +11,7 @@ from bus.can import Frame
 from bus.can.port import BusError
 from plant.kernels import layout as at
 from scenarios.lab.layers import AXES, Errors, Evidence, Laid, Stacks, Staged, Watched, chained, turned, words
+from tests.scenarios.lab.faults.stub import acted
 
 
 class Adds(Laid):
@@ -94,7 +95,7 @@ def test_a_sample_unlike_the_first_one_shows_that_something_moved() -> None:
     watched = Watched(layers, (chip, "read"), evidence, "ra.absolute")
     assert [chip.read(1), chip.read(2)] == [0, 0] and evidence.first_ns is None
     assert chip.read(3) == 7
-    assert (evidence.first_ns, evidence.on) == (3, "sample of ra.absolute")
+    assert acted(evidence) == (3, "sample of ra.absolute")
     watched.clear(4)
     assert chip.read(5) == 0
 
@@ -135,7 +136,7 @@ def test_a_stage_acts_at_once_on_the_duties_that_are_there(axis: str, wanted: tu
     board, evidence = Board(), Evidence("x")
     half = Half(board.network, axis, evidence, 5)
     assert board.written == [(5, wanted[0] / 2, wanted[1])]
-    assert (evidence.first_ns, evidence.on) == (5, f"duties of {axis}")
+    assert acted(evidence) == (5, f"duties of {axis}")
     board.pwm.drive(6, 0.8, 0.6)
     half.clear(7)
     assert board.written[1:] == [(6, 0.4, 0.6), (7, 0.8, 0.6)]
@@ -181,4 +182,4 @@ def test_an_error_is_a_fault_s_while_it_is_online_and_its_own(
     Errors(Stacks(chained), port, evidence, lambda: mine)
     port.on_error(9, error)
     assert heard == ([(9, error)] if listens else [])
-    assert (evidence.first_ns, evidence.on) == ((9, "bit error at DISPLAY") if acts else (None, ""))
+    assert acted(evidence) == ((9, "bit error at DISPLAY") if acts else (None, ""))

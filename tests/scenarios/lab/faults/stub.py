@@ -102,3 +102,8 @@ def place(*names: str) -> Place:
         queue=queue, wire=wire, boards=boards, layers=Stacks(chained), uarts={}, plant=None
     )
     return Place(network=network, random=np.random.default_rng(1), evidence=Evidence("test"))
+
+
+def acted(evidence: Evidence) -> tuple[int | None, str]:
+    """When a fault acted first, and on what."""
+    return evidence.first_ns, evidence.on

@@ -7,7 +7,7 @@ import pytest
 from bus.can import Frame
 from scenarios.lab.faults import onboard
 from scenarios.lab.faults.onboard import Hang, LateInterrupts
-from tests.scenarios.lab.faults.stub import place
+from tests.scenarios.lab.faults.stub import acted, place
 
 ONE = Frame(0x123, b"\1")
 S = 1_000_000_000
@@ -61,7 +61,7 @@ def test_a_hang_that_is_over_waits_for_no_interrupt_and_a_frame_proves_it(halt: 
     board = where.board("A")
     hang = Hang(where, {"node": "A"}, 10)
     board.port.on_receive(12, ONE)
-    assert (where.evidence.first_ns, where.evidence.on) == (12, "frame 123#01")
+    assert acted(where.evidence) == (12, "frame 123#01")
     hang.clear(15)
     assert not where.network.queue.due and board.port.on_receive is None  # type: ignore[attr-defined]
     assert board.calls == [("halt", 10), ("hear", 12), ("resume", 15)]

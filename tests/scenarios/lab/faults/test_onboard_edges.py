@@ -14,7 +14,7 @@ from scenarios.lab.faults.onboard import (
     Resets,
     took_down,
 )
-from tests.scenarios.lab.faults.stub import place
+from tests.scenarios.lab.faults.stub import acted, place
 
 ONE, OTHER = Frame(0x123, b"\1"), Frame(0x124, b"\2")
 MS = 1_000_000
@@ -28,7 +28,7 @@ def test_ears_miss_what_they_are_told_and_pass_on_the_rest() -> None:
     port.on_receive(1, OTHER)
     assert where.evidence.first_ns is None
     port.on_receive(2, ONE)
-    assert heard == [OTHER] and (where.evidence.first_ns, where.evidence.on) == (2, "frame 123#01")
+    assert heard == [OTHER] and acted(where.evidence) == (2, "frame 123#01")
     ears.clear(3)
     Deaf(where, {"node": "A"}, 0)
     port.on_receive(3, OTHER)
@@ -65,7 +65,7 @@ def test_a_second_one_acts_from_when_the_first_is_over() -> None:
     assert other.evidence.first_ns is None
     other.let_go("A")
     second.clear(6)
-    assert (other.evidence.first_ns, other.evidence.on) == (6, "supply of A")
+    assert acted(other.evidence) == (6, "supply of A")
     where.board("A").on = False
     first.clear(7)
     assert where.evidence.first_ns == 1
@@ -112,7 +112,7 @@ def test_a_crystal_keeps_what_it_has_gained_and_shows_two_periods_later() -> Non
     assert queue.step() == 1 + 10 * MS and where.evidence.first_ns is None  # type: ignore[attr-defined]
     board.on = True
     assert queue.step() == 1 + 20 * MS  # type: ignore[attr-defined]
-    assert (where.evidence.first_ns, where.evidence.on) == (1 + 20 * MS, "timer interrupt of A")
+    assert acted(where.evidence) == (1 + 20 * MS, "timer interrupt of A")
     drift.clear(30 * MS)
     assert board.calls[2:] == [("pull -500", 30 * MS), ("retime", 0)]
 

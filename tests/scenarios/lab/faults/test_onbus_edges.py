@@ -10,7 +10,7 @@ from bus.can.port import BusError
 from bus.protocol import COMMAND_BASE, MEASUREMENT_BASE, REPLY_BASE
 from scenarios.lab.faults import onbus
 from scenarios.lab.faults.onbus import Babbler, BitErrors, Cut, Dominant, Forger, Guest, Twin, WrongRate
-from tests.scenarios.lab.faults.stub import BIT_NS, place
+from tests.scenarios.lab.faults.stub import BIT_NS, acted, place
 
 ONE, OTHER = Frame(0x123, b"\1"), Frame(0x124, b"\2")
 
@@ -23,7 +23,7 @@ def test_a_guest_acts_when_its_frame_is_through() -> None:
     assert port.sent == [(ONE, 5)] and port.name == "guest"
     assert where.evidence.first_ns is None
     port.on_sent(9, ONE)
-    assert (where.evidence.first_ns, where.evidence.on) == (9, "frame 123#01")
+    assert acted(where.evidence) == (9, "frame 123#01")
     assert port in guest.wire.ports
 
 
@@ -131,7 +131,7 @@ def test_all_boards_cannot_be_parted_nor_one_twice(monkeypatch: pytest.MonkeyPat
     assert where.evidence.first_ns is None  # nobody is there to miss it
     ports[1].online = True
     made[3](5, ONE, "C")
-    assert (where.evidence.first_ns, where.evidence.on) == (5, "frame 123#01")
+    assert acted(where.evidence) == (5, "frame 123#01")
     cut.clear(6)
     assert healed == [6]
     ports[1]._wire = None
@@ -172,7 +172,7 @@ def test_a_bus_is_held_by_the_first_and_let_go_by_the_last(monkeypatch: pytest.M
     first.clear(3)
     assert not freed and where.evidence.first_ns is None
     second.clear(4)
-    assert freed == [4] and (where.evidence.first_ns, where.evidence.on) == (4, "the bus")
+    assert freed == [4] and acted(where.evidence) == (4, "the bus")
     assert where.board("A").port.on_error is None
     again = Dominant(other := place(), {}, 5)
     other.board("A").port.on_error(6, BusError("form"))
@@ -190,11 +190,12 @@ def test_bit_errors_meet_the_frames_of_one_node_or_of_all(node: str | None, send
     where = place()
     given = {"probability": 1.0} | ({"node": node} if node else {})
     BitErrors(where, given, 0)
-    flips = [where.network.wire.disturbance(5, ONE, sender) for _ in range(300)]
+    wire: Any = where.network.wire
+    flips: list[Any] = [wire.disturbance(5, ONE, sender) for _ in range(300)]
     if not meant:
         assert set(flips) == {None} and where.evidence.first_ns is None
         return
-    places = {flip.bit if hasattr(flip, "bit") else flip[0] for flip in flips}
+    places = {flip.bit for flip in flips}
     assert isinstance(flips[0], Flip)
     assert places == set(range(frame_bits(ONE) - 3))  # all but the intermission
     assert where.evidence.on == "frame 123#01"
@@ -202,11 +203,12 @@ def test_bit_errors_meet_the_frames_of_one_node_or_of_all(node: str | None, send
 
 def test_bit_errors_pass_on_what_lies_below_and_meet_their_share() -> None:
     where = place()
-    where.network.wire.disturbance = lambda t_ns, frame, sender: Flip(99)
+    wire: Any = where.network.wire
+    wire.disturbance = lambda t_ns, frame, sender: Flip(99)
     BitErrors(where, {"probability": 0.25}, 0)
-    flips = [where.network.wire.disturbance(5, ONE, "A") for _ in range(2000)]
+    flips: list[Any] = [wire.disturbance(5, ONE, "A") for _ in range(2000)]
     assert flips.count(Flip(99)) == pytest.approx(1500, abs=80)
     none = place()
     BitErrors(none, {"probability": 0.0}, 0)
-    assert none.network.wire.disturbance is not None
-    assert none.network.wire.disturbance(5, ONE, "A") is None
+    wire = none.network.wire
+    assert wire.disturbance(5, ONE, "A") is None

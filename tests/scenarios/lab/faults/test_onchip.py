@@ -7,9 +7,9 @@ import pytest
 
 from bus.can import Frame
 from bus.protocol import COMMAND_BASE, REPLY_BASE
-from scenarios.lab.faults import onchip
 from scenarios.lab.faults.onchip import EndatLine, FrameLoss, PwmStuck, SerialNoise
-from tests.scenarios.lab.faults.stub import place
+from scenarios.lab.layers import Staged
+from tests.scenarios.lab.faults.stub import acted, place
 
 
 @pytest.mark.parametrize(
@@ -55,7 +55,7 @@ def test_a_transfer_has_one_of_36_bits_inverted(line: Any) -> None:
     base = 0 if line is None else 1
     flips = {board.endat.line(0) ^ base for _ in range(1500)}
     assert flips == {1 << bit for bit in range(36)}
-    assert (where.evidence.first_ns, where.evidence.on) == (8, "transfer of POSITION_RA")
+    assert acted(where.evidence) == (8, "transfer of POSITION_RA")
 
 
 def test_a_share_of_nothing_changes_no_transfer_and_no_packet() -> None:
@@ -73,7 +73,7 @@ def test_a_packet_has_one_of_its_bits_inverted() -> None:
     for _ in range(600):
         uart.sink(3, b"\0\0\0")
     assert {int.from_bytes(each, "little") for each in heard} == {1 << bit for bit in range(24)}
-    assert (where.evidence.first_ns, where.evidence.on) == (3, "RS232 packet of A")
+    assert acted(where.evidence) == (3, "RS232 packet of A")
     noise.clear(4)
     uart.sink(5, b"\0")
     assert heard[-1] == b"\0"
@@ -91,7 +91,7 @@ def test_a_line_that_nobody_listens_to_has_no_noise_and_a_board_without_one_is_s
 
 
 def test_a_stuck_PWM_keeps_the_duties_of_the_beginning(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(onchip.Staged, "__init__", lambda *_: None)
+    monkeypatch.setattr(Staged, "__init__", lambda *_: None)
     stuck = PwmStuck(place(), {"axis": "ra"}, 0)
     assert stuck.duties((0.0, 0.1)) == (0.0, 0.1)
     assert stuck.duties((0.5, 0.2)) == (0.0, 0.1)

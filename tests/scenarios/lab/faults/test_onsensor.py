@@ -8,7 +8,7 @@ import pytest
 
 from scenarios.lab.faults.onsensor import Delayed, Intermittent, Off, Sensor, Stuck, unit
 from scenarios.lab.faults.place import Place
-from tests.scenarios.lab.faults.stub import place
+from tests.scenarios.lab.faults.stub import acted, place
 
 
 class Chip:
@@ -26,7 +26,7 @@ class Chip:
 
     @property
     def acted(self) -> tuple[int | None, str]:
-        return self.place.evidence.first_ns, self.place.evidence.on
+        return acted(self.place.evidence)
 
 
 def test_a_stuck_sensor_shows_its_first_reading_even_if_that_is_nothing(
@@ -34,7 +34,7 @@ def test_a_stuck_sensor_shows_its_first_reading_even_if_that_is_nothing(
 ) -> None:
     chip = Chip(monkeypatch)
     stuck = Stuck(chip.place, {"sensor": "ra.absolute"}, 0)
-    assert [chip.at(1, 0), chip.at(2, 0)] == [0, 0] and chip.acted == (None, "")
+    assert [chip.at(1, 0), chip.at(2, 0)] == [0, 0] and not chip.acted[1]
     assert chip.at(3, 7) == 0 and chip.acted == (3, "sample of ra.absolute")
     stuck.clear(4)
     assert chip.at(5, 9) == 9

@@ -2,8 +2,10 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
+import pytest
 
 from plant.model import load
 from scenarios.studies.paper.measures import Array, Log
@@ -24,13 +26,18 @@ def log_of(
     true: Array | float | None = None,
 ) -> Log:
     """A log in which each number stands for a whole column. rate, true: arcsec/s; amperes: of A and of B."""
-    t_s: Array = np.arange(round(seconds / LOG_PERIOD_S)) * LOG_PERIOD_S
+    t_s: Array = np.asarray(np.arange(round(seconds / LOG_PERIOD_S)) * LOG_PERIOD_S, dtype=np.float64)
 
     def column(values: Array | float) -> Array:
         return np.array(np.broadcast_to(values, t_s.shape), dtype=np.float64)
 
     a, b = (column(each) / ADC_A_PER_COUNT for each in amperes)
     return Log(t_s, column(rate) / COUNT_RATE, column(effort), a, b, column(rate if true is None else true))
+
+
+def near(value: float) -> Any:
+    """Compares as `value` does, but for rounding."""
+    return pytest.approx(value)
 
 
 @dataclass

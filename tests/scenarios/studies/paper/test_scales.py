@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from plant.model import with_value
 from scenarios.studies.paper import scales
 from scenarios.studies.paper.scales import Drive, drive
-from tests.scenarios.studies.paper.bench import LOW
+from tests.scenarios.studies.paper.bench import LOW, near
 
 SHEET = Drive(
     torque_constant=0.5, winding=2.0, switch=0.5, inductance=1e-3, diode_drop=None, rotor=1.0, stiffness=1.0,
@@ -73,10 +73,10 @@ def test_a_plant_s_sheet_is_reflected_to_the_axis(drop: float | None) -> None:
     hertz = LOW.controller.pwm_frequency.si
     assert made == Drive(
         torque_constant=motor.torque_constant.si, winding=motor.resistance.si,
-        switch=pytest.approx(motor.loop - motor.resistance.si),
+        switch=near(motor.loop - motor.resistance.si),
         inductance=motor.inductance.si, diode_drop=drop,
-        rotor=pytest.approx(motor.rotor_inertia.si * scales.GEAR_RATIO**2),
-        stiffness=axis.gear.stiffness.si / 2, voltage=24.0, split=pytest.approx(0.1),
-        ripple=pytest.approx((24.0 + (drop or 0.0)) / (2 * motor.inductance.si * hertz)),
+        rotor=near(motor.rotor_inertia.si * scales.GEAR_RATIO**2),
+        stiffness=axis.gear.stiffness.si / 2, voltage=24.0, split=near(0.1),
+        ripple=near((24.0 + (drop or 0.0)) / (2 * motor.inductance.si * hertz)),
     )  # fmt: skip
     assert made.winding + made.switch == pytest.approx(motor.loop)

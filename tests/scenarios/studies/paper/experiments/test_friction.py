@@ -1,6 +1,7 @@
 """The torque-velocity map on benches that are arithmetic: noise, steady states, closed and opened loop."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -146,7 +147,7 @@ def test_below_the_slowest_speed_the_loop_is_opened(monkeypatch: pytest.MonkeyPa
 
 def test_efforts_fall_there_and_back_in_turn(monkeypatch: pytest.MonkeyPatch) -> None:
     """From 40 there and 42 back, at 100 arcsec/s; the axis stands still below 37."""
-    pairs: list[tuple[float, int, int]] = []
+    pairs: list[tuple[Any, int, int]] = []
 
     def pair(_bench: StubBench, begin: float, there: int, back: int) -> tuple[Log, Log]:
         pairs.append((begin, there, back))

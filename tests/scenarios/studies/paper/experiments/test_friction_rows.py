@@ -40,7 +40,12 @@ def test_E8_measures_three_inertias_by_eight_run_downs(monkeypatch: pytest.Monke
     asked: list[tuple[float, float]] = []
     factors: list[float] = []
     monkeypatch.setattr(friction, "friction_map", lambda *_: ([], FIT))
-    monkeypatch.setattr(friction, "run_down", lambda bench, *each: asked.append(each) or log_of(1.0))
+
+    def fall(_bench: StubBench, setpoint: float, turns: float) -> Log:
+        asked.append((setpoint, turns))
+        return log_of(1.0)
+
+    monkeypatch.setattr(friction, "run_down", fall)
 
     def other(model: PlantModel, factor: float) -> PlantModel:
         factors.append(factor)
@@ -72,7 +77,7 @@ def test_E12_is_the_slope_over_table_2_and_the_rise(monkeypatch: pytest.MonkeyPa
         amperes = torque / (sheet.torque_constant * GEAR_RATIO)
         pulls = sheet.ripple * sheet.split * (1.0 - sheet.split)
         pair = (amperes, pulls) if speed > 0 else (pulls, amperes)
-        return log_of(speed, 1.0, np.sign(speed) * 3000.0, pair)
+        return log_of(speed, 1.0, float(np.sign(speed)) * 3000.0, pair)
 
     monkeypatch.setattr(friction, "map_run", run)
     found = friction.viscous_branch.measure(benches(lambda *_: log_of(0.0)))
@@ -87,7 +92,7 @@ def test_E14_takes_40_samples_that_end_20_before_the_axis_goes(
     """A current of 5 A times the duty, but for the last five of these samples."""
     rows = np.arange(size)
     rate = np.where(rows >= (size if gone_at is None else gone_at), 21.0, 19.9) * COUNT_RATE
-    effort = 300.0 + rows
+    effort = np.asarray(300.0 + rows, dtype=np.float64)
     inside = (rows >= end - 40) & (rows < end)
     lead = effort / 3000.0
     ripple = drive(HIGH).ripple * lead * (1.0 - lead)

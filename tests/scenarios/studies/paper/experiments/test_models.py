@@ -21,7 +21,7 @@ from scenarios.studies.paper.experiments.models import (
 )
 from scenarios.studies.paper.measures import Log
 from scenarios.studies.paper.scales import ARCSEC, COUNT_RATE, GEAR_RATIO
-from tests.scenarios.studies.paper.bench import LOW, StubBench, benches, log_of
+from tests.scenarios.studies.paper.bench import LOW, StubBench, benches, log_of, near
 
 HALVES = LinearAxis(
     torque_constant=1.0, resistance=2.0, inductance=2e-4 / log(2.0), inertia=1e6, viscous=0.0,
@@ -37,11 +37,11 @@ def test_the_axis_of_a_plant_is_reflected_to_the_shaft() -> None:
         torque_constant=motor.torque_constant.si,
         resistance=motor.loop,
         inductance=motor.inductance.si,
-        inertia=pytest.approx(axis.inertia.si / square + 2 * motor.rotor_inertia.si, rel=1e-12),
-        viscous=pytest.approx(axis.friction.viscous.si / square + 2 * motor.drag.si, rel=1e-12),
-        stiction=pytest.approx(axis.friction.stiction.si / GEAR_RATIO, rel=1e-12),
+        inertia=near(axis.inertia.si / square + 2 * motor.rotor_inertia.si),
+        viscous=near(axis.friction.viscous.si / square + 2 * motor.drag.si),
+        stiction=near(axis.friction.stiction.si / GEAR_RATIO),
         voltage=24.0,
-        drive=pytest.approx(0.9),
+        drive=near(0.9),
     )
 
 

@@ -1,0 +1,183 @@
+"""The serving loop over stubs: what is said each second, when it is over, and threads that go first."""
+
+import os
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from scenarios.doors import loop
+from scenarios.doors.loop import AHEAD, NOT_GRANTED, Loop, first
+from tests.scenarios.doors.served import stub_served
+
+S = 1_000_000_000
+TEXT = "0.0 s simulated, bus load 25.0%, no input"
+
+
+class Desk:
+    """A loop whose clock a test sets, s."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, duration_s: float | None = None) -> None:
+        self.clock, self.shown, self.said = 100.0, list[str](), list[str]()
+        self.polled: list[int] = []
+        self.flushed: list[float] = []
+        self.served = stub_served()
+        self.served.pacer.slips, self.served.pacer.slipped_s = 0, 0.0
+        self.steps: list[Any] = []
+        self.served.pacer.run = lambda each_slice: self.steps.append(each_slice)
+        monkeypatch.setattr(loop, "perf_counter", lambda: self.clock)
+        monkeypatch.setattr(
+            loop, "gc", SimpleNamespace(collect=lambda: 0, freeze=lambda: 0, unfreeze=lambda: 0)
+        )
+        keeper: Any = SimpleNamespace(door=None, poll=self.polled.append)
+        console: Any = SimpleNamespace(print=self.said.append)
+        recording: Any = SimpleNamespace(flush=lambda: self.flushed.append(self.clock))
+        self.loop: Any = Loop(self.served, [keeper], console, self.shown.append, duration_s, recording)
+        self.loop.run()
+
+    def slice(self, clock: float) -> bool:
+        self.clock = clock
+        over: bool = self.loop._slice()
+        return over
+
+
+@pytest.fixture
+def desk(monkeypatch: pytest.MonkeyPatch) -> Desk:
+    return Desk(monkeypatch)
+
+
+def test_at_its_end_nothing_runs_or_counts_and_its_time_stands(desk: Desk) -> None:
+    assert desk.steps == [desk.loop._slice]
+    assert not desk.served.entry.running and not desk.served.punctual.counting
+    desk.served.now_ns = 9 * S
+    assert desk.loop.text() == "9.0 s simulated, bus load 25.0%, no input"
+    desk.loop._end_ns = 2 * S
+    assert desk.loop.text().startswith("2.0 s simulated")
+
+
+def test_doors_are_looked_at_with_the_present_time(desk: Desk) -> None:
+    desk.served.now_ns = 7
+    assert not desk.slice(100.1)
+    assert desk.polled == [7] and desk.served.entry.running
+
+
+def test_a_line_is_shown_each_second_and_logs_half_a_second_later(desk: Desk) -> None:
+    for clock in (100.99, 101.0, 101.5, 101.99, 102.0, 102.4, 102.5):
+        desk.slice(clock)
+    assert len(desk.shown) == 2 and desk.flushed == [101.5, 102.5]
+    assert desk.shown[0] == TEXT + ", 0.00 times real time"
+    desk.served.pacer.paused = True
+    desk.slice(103.0)
+    assert desk.shown[-1] == TEXT + ", paused"
+
+
+def test_the_pace_is_simulated_over_wall_time_of_the_last_second(desk: Desk) -> None:
+    desk.served.now_ns = 3 * S
+    desk.slice(101.5)
+    desk.served.now_ns = 4 * S
+    desk.slice(103.5)
+    assert [line.rpartition(", ")[2] for line in desk.shown] == [
+        "2.00 times real time",
+        "0.50 times real time",
+    ]
+
+
+def test_a_slow_machine_is_said_once_and_that_it_keeps_up_again(desk: Desk) -> None:
+    pacer = desk.served.pacer
+    pacer.speed = 2.5
+    for clock, slips in ((101.0, 1), (102.0, 2), (103.0, 2), (104.0, 2), (105.0, 3)):
+        pacer.slips = slips
+        desk.served.now_ns += S
+        desk.slice(clock)
+    slow = (
+        "this machine cannot keep up: 1.00 of 2.5 times real time. Time runs slower. "
+        "Boards lose no frame. What clients send too fast is refused and counted."
+    )
+    assert desk.said == [slow, "keeping up again at 1.00 times real time", slow]
+    pacer.slipped_s = 1.25
+    desk.served.entry.count = 4
+    desk.loop._end_ns = 6 * S
+    assert desk.loop.text() == (
+        "6.0 s simulated, 1.2 s given up on a machine too slow, bus load 25.0%, 4 inputs"
+    )
+
+
+def test_it_is_over_after_its_duration_or_when_it_was_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
+    desk = Desk(monkeypatch, 2.0)
+    assert not desk.slice(101.9) and desk.slice(102.0)
+    endless = Desk(monkeypatch)
+    assert not endless.slice(1e9)
+    endless.served.ending = True
+    assert endless.slice(100.0)
+
+
+class Scheduler:
+    """The system's calls; granted: whether it allows a real-time class."""
+
+    SCHED_RR, SCHED_RESET_ON_FORK = 2, 0x4000_0000
+
+    def __init__(self, granted: bool = True) -> None:
+        self.granted = granted
+        self.calls: list[tuple[int, int, int]] = []
+
+    def sched_param(self, priority: int) -> int:
+        return priority
+
+    def sched_getscheduler(self, thread: int) -> int:
+        if thread == 9:
+            raise ProcessLookupError
+        return 3 | self.SCHED_RESET_ON_FORK
+
+    def sched_setscheduler(self, thread: int, policy: int, priority: int) -> None:
+        if priority and not self.granted:
+            raise PermissionError
+        self.calls.append((thread, policy, priority))
+
+
+@pytest.fixture
+def threads(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
+    for name in ("7", "9"):
+        (tmp_path / name).touch()
+    monkeypatch.setattr(loop, "_THREADS", tmp_path)
+    return tmp_path
+
+
+def test_all_threads_go_first_and_are_as_they_were(monkeypatch: pytest.MonkeyPatch, threads: Path) -> None:
+    system = Scheduler()
+    monkeypatch.setattr(loop, "os", system)
+    with first() as said:
+        assert said == AHEAD == "ticks run before other programs, as the system allows it"
+        assert system.calls == [(7, 2 | 0x4000_0000, 1)]
+    assert system.calls[1:] == [(7, 3, 0)]
+    monkeypatch.setattr(loop, "_THREADS", threads / "none")
+    with first():
+        assert system.calls[2][0] == 0  # the process itself
+
+
+def test_what_is_not_granted_is_an_error_if_it_was_asked_for(
+    monkeypatch: pytest.MonkeyPatch, threads: Path
+) -> None:
+    system = Scheduler(granted=False)
+    monkeypatch.setattr(loop, "os", system)
+    with (
+        pytest.raises(
+            OSError, match=r"^--realtime: not granted; run as root, or give the user an rtprio limit "
+        ),
+        first(),
+    ):
+        pass
+    with first(asked=False) as said:
+        assert said == f"ticks run among other programs; if busy ones make them late, {NOT_GRANTED}"
+    assert system.calls == []
+
+
+def test_a_system_without_such_a_class_is_said(monkeypatch: pytest.MonkeyPatch, threads: Path) -> None:
+    monkeypatch.setattr(loop, "os", SimpleNamespace(name=os.name))
+    with (
+        pytest.raises(OSError, match=r"^--realtime: this system has no real-time scheduling for programs$"),
+        first(),
+    ):
+        pass
+    with first(asked=False) as said:
+        assert said == "ticks run among other programs; busy ones make them late, so end those"
