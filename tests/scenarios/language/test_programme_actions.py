@@ -12,7 +12,10 @@ from host.procedures import dome, focus, manual
 from host.procedures.autoguide import Guiding
 from host.sky.pointfit import TooFewStars
 from scenarios.language import configure, programme
+from scenarios.native.finder import compiled
 from tests.scenarios.language.desk import Desk, Night
+
+pytestmark = pytest.mark.skipif(compiled(), reason="no class of a test may derive from a compiled one")
 
 RA, DEC = Device.AXIS_RA, Device.AXIS_DEC
 

@@ -8,7 +8,10 @@ from typing import Any
 import pytest
 
 from bus.protocol import Device, MotionFlag, Opcode
+from scenarios.native.finder import compiled
 from tests.scenarios.language.desk import Desk, Night
+
+pytestmark = pytest.mark.skipif(compiled(), reason="no class of a test may derive from a compiled one")
 
 STILL = SimpleNamespace(velocity=0, flags=0)
 MOVING = SimpleNamespace(velocity=1, flags=0)

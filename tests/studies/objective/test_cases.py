@@ -145,7 +145,7 @@ def test_the_command_ends_well_where_rows_are_met_and_wind_is_no_worse(
     data = json.loads((tmp_path / "new/objective.json").read_text())
     assert data["command"] == "schmidt objective --seeds 2 --shift 2.5 --only '' --steps"
     assert data["starts_deg"] == starts(2.5) and data["rows"][0]["worst"] == 1.1
-    page = (tmp_path / "new/one-arcsecond.md").read_text()
+    page = (tmp_path / "new" / "one-arcsecond.md").read_text()
     assert page == markdown([row([1.1])], data["command"], {})
 
 
