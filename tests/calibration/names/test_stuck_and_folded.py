@@ -5,7 +5,8 @@ import pytest
 
 from calibration.names import channel_delay, damaged_tooth, log_wrap, sample_loss
 from calibration.names.unknown_bits import _hidden, repair_stuck_bit
-from tests.calibration.names.test_column_faults import COUNT, PATH, PERIOD_S, ROWS, frame, run
+from tests.calibration.names.test_column_faults import COUNT, PATH, PERIOD_S, ROWS, run
+from tests.calibration.names.test_rows_and_stamps import frame
 
 
 def test_columns_of_a_log_have_the_plant_s_numbers() -> None:
