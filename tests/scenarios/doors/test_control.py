@@ -2,37 +2,12 @@
 
 import json
 from types import SimpleNamespace
-from typing import Any
 
 import pytest
 
-from scenarios.doors.control import STEPPING, TOKEN_VARIABLE, ControlDoor
-from tests.scenarios.doors.served import StubClient, StubClients, stub_served
-
-FAR = "192.0.2.7"  # TEST-NET-1: another machine's
-
-
-class Desk:
-    """A control door with a client of this machine."""
-
-    def __init__(self, peer: str = "127.0.0.1", token: str | None = "word") -> None:
-        self.served = stub_served()
-        door: Any = ControlDoor("7411", token, self.served)
-        self.door, self.clients = door, StubClients()
-        door._clients = self.clients
-        self.client = self.come(peer)
-
-    def come(self, peer: str) -> StubClient:
-        client = StubClient(peer)
-        self.clients.new.append(client)
-        self.door.poll(0)
-        return client
-
-    def __call__(self, line: str) -> str:
-        self.client.heard.clear()
-        self.client.says.append(line.encode() + b"\n")
-        self.door.poll(0)
-        return b"".join(self.client.heard).decode()
+from scenarios.doors.control import STEPPING
+from tests.scenarios.doors.controldesk import Desk
+from tests.scenarios.doors.served import StubClient
 
 
 @pytest.fixture
@@ -105,7 +80,7 @@ def test_a_snapshot_goes_by_its_name_or_none(desk: Desk) -> None:
 def test_status_is_in_seconds_and_ms(desk: Desk) -> None:
     desk.served.now_ns = 2_500_000_000
     found = json.loads(desk("status").removeprefix("ok "))
-    known: dict[str, Any] = {
+    known: dict[str, object] = {
         "simulated_s": 2.5,
         "speed": 1.0,
         "paused": False,
@@ -127,48 +102,6 @@ def test_an_error_is_one_line(desk: Desk) -> None:
 
     desk.served.command = refuse
     assert desk("power X on") == "error: no board\n"
-
-
-def test_another_machine_needs_the_token() -> None:
-    desk = Desk(FAR)
-    assert desk("status") == "error: this needs a token: token WORD\n"
-    assert desk.door.refused == 1
-    assert desk("token word") == "ok\n"
-    assert desk("pause") == "ok paused\n" and desk.door.refused == 1
-
-
-@pytest.mark.parametrize("line", ["token other", "token", "token word word"])
-def test_a_wrong_token_is_hung_up_on(line: str) -> None:
-    desk = Desk(FAR)
-    assert desk(line) == "error: wrong token\n"
-    assert desk.client.gone and desk.door.refused == 1 and not desk.clients.all
-
-
-def test_who_was_trusted_and_left_is_forgotten() -> None:
-    desk = Desk(FAR)
-    desk("token word")
-    desk.client.gone = True
-    desk.door.poll(0)
-    assert not desk.door._trusted and not desk.door._rest
-    assert desk.door.state() == "1 clients"
-
-
-def test_the_state_tells_who_was_refused() -> None:
-    desk = Desk(FAR)
-    desk("status")
-    assert "1 refused for want of a token" in desk.door.state()
-
-
-def test_a_name_has_the_token_where_it_was_made_up(monkeypatch: pytest.MonkeyPatch) -> None:
-    served = stub_served()
-    monkeypatch.delenv(TOKEN_VARIABLE, raising=False)
-    made = ControlDoor(f"{FAR}:7411", None, served)
-    assert made.name == f"--control {FAR}:7411 (token {made.token})" and len(made.token) >= 16
-    assert ControlDoor(f"{FAR}:7411", "w", served).name == f"--control {FAR}:7411 (with your token)"
-    assert ControlDoor("7411", None, served).name == "--control 7411"
-    monkeypatch.setenv(TOKEN_VARIABLE, "of the environment")
-    assert ControlDoor("7411", None, served).token == "of the environment"
-    assert ControlDoor("7411", "mine", served).token == "mine"
 
 
 @pytest.mark.parametrize(("size", "good"), [(1000, True), (1001, False)])

@@ -12,6 +12,7 @@ from bus.protocol import MEASUREMENT_BASE, AxisMode
 from scenarios.lab import chain
 from scenarios.lab.chain import SWITCHES, WATCHDOG, Chain, board_of, chained
 from scenarios.native.finder import compiled
+from tests.scenarios.lab.faults.stub import Queue
 
 MS = 1_000_000
 ENDS = {"ra": (-1.0, 2.0), "dec": (-3.0, 3.0)}
@@ -19,25 +20,8 @@ FASTEST = 1.5 * 24.0 / (0.5 * 360.48863990040456)
 """rad/s of an axis: no load, half more than the supply, 0.5 V s/rad and the gear."""
 
 
-class Queue:
-    """Keeps what is to be called, by time."""
-
-    def __init__(self) -> None:
-        self.now_ns = 0
-        self.due: list[tuple[int, Any]] = []
-
-    def at(self, t_ns: int, call: Any) -> None:
-        self.due.append((t_ns, call))
-
-    def take_out(self, chosen: Any) -> None:
-        self.due = [each for each in self.due if not chosen(each[1])]
-
-    def step(self) -> int:
-        """Call the next one."""
-        t_ns, call = min(self.due, key=lambda each: each[0])
-        self.due.remove((t_ns, call))
-        call(t_ns)
-        return t_ns
+class Times(Queue):
+    """Tells when the next call is due."""
 
     def next_ns(self) -> int:
         return min(t_ns for t_ns, _ in self.due)
@@ -48,7 +32,7 @@ class Rig:
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch, guards: tuple[str, ...] = ()) -> None:
         self.angles, self.cuts, self.told = {"ra": 0.0, "dec": 0.0}, list[str](), list[tuple[int, str]]()
-        self.queue, self.taps = Queue(), list[Any]()
+        self.queue, self.taps = Times(), list[Any]()
         motor = SimpleNamespace(torque_constant=SimpleNamespace(si=0.5))
         axes = {axis: SimpleNamespace(truth=lambda t_ns, axis=axis: (self.angles[axis],)) for axis in ENDS}
         supply = SimpleNamespace(voltage=SimpleNamespace(si=24.0))
