@@ -29,17 +29,13 @@ class Feed:
 
     def until(self, now_ns: int) -> bytes:
         """The bytes whose stop bit is over by `now_ns` and that have not been handed out."""
-        if not self._packets:
-            return b""
         found = bytearray()
         while self._packets:
             start_ns, packet = self._packets[0]
-            bit_ns = 1_000_000_000 / self._uart.baud
-            through = min(len(packet), int((now_ns - start_ns) / (10 * bit_ns))) if now_ns > start_ns else 0
-            while through < len(packet) and start_ns + self._uart.duration_ns(through + 1) <= now_ns:
-                through += 1
-            found += packet[self._sent : through]
-            self._sent = max(self._sent, through)
+            before = self._sent
+            while self._sent < len(packet) and start_ns + self._uart.duration_ns(self._sent + 1) <= now_ns:
+                self._sent += 1
+            found += packet[before : self._sent]
             if self._sent < len(packet):
                 break
             self._packets.popleft()
