@@ -73,7 +73,7 @@ class Desk:
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.pipe, self.plug, self.clock, self.killed, self.said = Pipe(), Plug(), 0.0, 0, list[str]()
-        self.started = 0
+        self.started = self.waited = 0
         self.slow = False
         feed = SimpleNamespace(until=lambda now_ns: b"line" if now_ns == 7 else b"")
         self.dropped: list[str] = []
@@ -99,7 +99,7 @@ class Desk:
         monkeypatch.setattr(host_door, "log_headers", lambda *_: {})
         monkeypatch.setattr(host_door, "Pipe", lambda: (self.pipe, Pipe()))
         monkeypatch.setattr(host_door, "select", SimpleNamespace(poll=lambda: poll, POLLIN=1))
-        monkeypatch.setattr(host_door, "monotonic", lambda: self.clock)
+        monkeypatch.setattr(host_door, "monotonic", lambda: 1000.0 + self.clock)
         monkeypatch.setattr(subprocess, "Popen", self.start)
         options: Any = "options"
         self.served, self.door = served, HostProcess(served, options, self.said.append)
@@ -116,6 +116,7 @@ class Desk:
         self.slow = False
 
     def wait(self, timeout_s: float = 0.0) -> None:
+        self.waited += 1
         if self.slow:
             raise subprocess.TimeoutExpired("host", timeout_s)
 

@@ -13,6 +13,15 @@ def desk(monkeypatch: pytest.MonkeyPatch) -> Desk:
     return Desk(monkeypatch)
 
 
+def test_before_it_is_open_nothing_is_said(desk: Desk) -> None:
+    desk.pipe.heard.clear()
+    desk.door.poll(9 * TICK)
+    assert desk.pipe.heard == []
+    desk.pipe.said.append(("opened", [], ""))
+    desk.door.open()
+    assert desk.pipe.said == []
+
+
 def test_its_program_starts_at_once_and_is_told_all(desk: Desk) -> None:
     assert desk.started == 1 and desk.door.name == "the host" and desk.door.state() == "not there yet"
     assert desk.pipe.heard == [messages.Settings("dated s", "options", ["A"], ("A",), {}, [])]  # type: ignore[arg-type]
@@ -137,7 +146,7 @@ def test_it_hangs_up_hears_the_farewell_and_ends_who_does_not(desk: Desk) -> Non
     desk.slow = True
     desk.door.close()
     assert desk.pipe.heard == [("close",), "closed"] and desk.plug.unplugged and desk.killed == 1
-    assert desk.door.state() == "moves" and 2.0 in desk.pipe.waits
+    assert desk.door.state() == "moves" and 2.0 in desk.pipe.waits and desk.waited == 2
     desk.door.close()
     desk.door.poll(9 * TICK)
     assert len(desk.pipe.heard) == 2 and desk.killed == 1

@@ -112,6 +112,27 @@ def test_it_is_over_after_its_duration_or_when_it_was_stopped(monkeypatch: pytes
     assert endless.slice(100.0)
 
 
+def test_where_clients_step_time_the_control_plane_is_waited_at(monkeypatch: pytest.MonkeyPatch) -> None:
+    desk = Desk(monkeypatch, 5.0)
+    waited: list[float] = []
+    plane: Any = SimpleNamespace(wait=waited.append)
+    monkeypatch.setattr(loop, "ControlDoor", SimpleNamespace)
+    polled: list[int] = []
+    keeper: Any = SimpleNamespace(door=plane, poll=polled.append)
+    ran: list[Any] = []
+    desk.served.steps = SimpleNamespace(run=lambda *each: ran.append(each))
+    desk.loop.keepers = [*desk.loop.keepers, keeper]
+    desk.loop.run()
+    assert ran == [(desk.loop._slice, desk.loop._wait)] and len(desk.steps) == 1
+    desk.served.now_ns = 8
+    assert not desk.loop._wait(0.5)
+    assert waited == [0.5] and polled == [8] and desk.polled == []
+    desk.slice(100.1)
+    assert polled == [8] and desk.polled == [8]
+    desk.clock = 105.0
+    assert desk.loop._wait(0.0)
+
+
 class Scheduler:
     """The system's calls; granted: whether it allows a real-time class."""
 
@@ -170,6 +191,24 @@ def test_what_is_not_granted_is_an_error_if_it_was_asked_for(
     with first(asked=False) as said:
         assert said == f"ticks run among other programs; if busy ones make them late, {NOT_GRANTED}"
     assert system.calls == []
+
+
+def test_a_thread_that_was_lifted_is_put_back_if_the_next_is_not(
+    monkeypatch: pytest.MonkeyPatch, threads: Path
+) -> None:
+    system: Any = Scheduler()
+    lift = system.sched_setscheduler
+
+    def once(thread: int, policy: int, priority: int) -> None:
+        lift(thread, policy, priority)
+        system.granted = False
+
+    system.sched_setscheduler = once
+    (threads / "9").rename(threads / "11")
+    monkeypatch.setattr(loop, "os", system)
+    with first(asked=False):
+        lifted = [thread for thread, _, priority in system.calls if priority]
+        assert len(lifted) == 1 and system.calls[1:] == [(lifted[0], 3, 0)]
 
 
 def test_a_system_without_such_a_class_is_said(monkeypatch: pytest.MonkeyPatch, threads: Path) -> None:

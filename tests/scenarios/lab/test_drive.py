@@ -27,9 +27,9 @@ def axis(inertia: float, rotor: float, damping: float = 1.0, drop: float | None 
     )
 
 
-def plant(ra: Any, dec: Any) -> Any:
+def plant(ra: Any, dec: Any, split: float = 0.1) -> Any:
     controller = SimpleNamespace(
-        kp=number(0.9), ki=number(0.07), counter_split=number(0.1), pwm_steps=number(3000.4),
+        kp=number(0.9), ki=number(0.07), counter_split=number(split), pwm_steps=number(3000.4),
         pwm_frequency=number(20000.2),
     )  # fmt: skip
     return SimpleNamespace(model=SimpleNamespace(axes=SimpleNamespace(ra=ra, dec=dec), controller=controller))
@@ -85,6 +85,6 @@ def test_trains_that_damp_well_allow_a_faster_loop(bandwidth: float, pointing: f
 )
 def test_the_PWM_is_in_whole_numbers_and_a_frame_has_120_bits(bitrate: int, frame_ns: int) -> None:
     ra = axis(1000.0, 1e-3)
-    made = axis_config(plant(ra, ra), "ra", (0, 1), bitrate)
-    assert (made.counter_split, made.pwm_steps, made.pwm_hz) == (10, 3000, 20000)
+    made = axis_config(plant(ra, ra, 0.6), "ra", (0, 1), bitrate)
+    assert (made.counter_split, made.pwm_steps, made.pwm_hz) == (60, 3000, 20000)
     assert made.frame_ns == frame_ns

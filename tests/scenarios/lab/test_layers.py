@@ -122,6 +122,13 @@ class Half(Staged):
         return wanted[0] / 2, wanted[1]
 
 
+class Plus(Staged):
+    """A tenth more for motor A."""
+
+    def duties(self, wanted: tuple[float, float]) -> tuple[float, float]:
+        return wanted[0] + 0.1, wanted[1]
+
+
 class Cut(Staged):
     """Nothing, whatever lies there."""
 
@@ -154,16 +161,24 @@ def test_a_stage_that_changes_nothing_has_not_acted() -> None:
         Staged(other.network, "ra", quiet, 5)
 
 
-@pytest.mark.parametrize("first", [Half, Cut])
+def test_a_later_stage_comes_after_an_earlier_one() -> None:
+    board = Board()
+    for kind in (Half, Plus):
+        kind(board.network, "ra", Evidence("x"), 1)
+    board.pwm.drive(2, 0.8, 0.6)
+    assert board.written[-1] == (2, pytest.approx(0.5), 0.6)
+
+
+@pytest.mark.parametrize("first", [Plus, Cut])
 def test_the_last_word_is_had_whichever_came_first(first: type[Staged]) -> None:
     board = Board()
-    second = Cut if first is Half else Half
+    second = Cut if first is Plus else Plus
     stages = [kind(board.network, "ra", Evidence("x"), 1) for kind in (first, second)]
     board.pwm.drive(2, 0.8, 0.6)
     assert board.written[-1] == (2, 0.0, 0.0)
     next(each for each in stages if isinstance(each, Cut)).clear(3)
-    assert board.written[-1] == (3, 0.4, 0.6)  # wanted is what the board wrote last
-    next(each for each in stages if isinstance(each, Half)).clear(4)
+    assert board.written[-1] == (3, 0.9, 0.6)  # wanted is what the board wrote last
+    next(each for each in stages if isinstance(each, Plus)).clear(4)
     assert board.written[-1] == (4, 0.8, 0.6)
 
 
