@@ -125,6 +125,54 @@ def test_a_folder_without_a_session_is_said(tmp_path: Path) -> None:
             replay._facts(tmp_path)
 
 
+@pytest.mark.parametrize("begun", [True, False])
+@pytest.mark.parametrize("own", [True, False])
+def test_a_session_is_made_again_of_what_its_folder_has(
+    begun: bool, own: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A scenario and a plant, or the snapshot that it went on from."""
+    facts = {
+        "kinds": ["can2"],
+        "scenario": own,
+        "seed": 4,
+        "network": "lab",
+        "begun": begun,
+        "digest": "then",
+    }
+    asked: list[tuple[Any, ...]] = []
+    done: list[str] = []
+    served = stub_served()
+    served.now_ns = 9
+    stood = SimpleNamespace(scenario="stood", model="stood")
+    recording = SimpleNamespace(attach=lambda _: done.append("attach"), close=lambda t_ns: f"now {t_ns}")
+
+    def network(*each: Any, **more: Any) -> Any:
+        asked.append((*each, more["begun"]))
+        return served
+
+    def chosen(file: Path | None, seed: int, network_name: str | None) -> tuple[str, None]:
+        asked.append((file, seed, network_name))
+        return "chosen", None
+
+    monkeypatch.setattr(replay, "_facts", lambda folder: facts)
+    monkeypatch.setattr(replay, "standing", lambda found: stood)
+    monkeypatch.setattr(replay, "read", lambda file: asked.append((file,)))
+    monkeypatch.setattr(replay, "chosen", chosen)
+    monkeypatch.setattr(replay, "load_plant", lambda file: file.name)
+    monkeypatch.setattr(replay, "Recording", lambda *each: asked.append(each) or recording)  # type: ignore[func-returns-value]
+    monkeypatch.setattr(replay, "LiveNetwork", network)
+    monkeypatch.setattr(replay, "_enter", lambda *_: done.append("enter"))
+    assert replay.replay(tmp_path, tmp_path / "out") == ("now 9", "then")
+    assert done == ["attach", "enter"] and served.nodes == [2]
+    snapshot = tmp_path / "begun.snapshot"
+    if begun:
+        expected = [(snapshot,), (tmp_path / "out", snapshot), ("stood", "stood", stood)]
+    else:
+        file = tmp_path / "scenario.yaml" if own else None
+        expected = [(file, 4, "lab"), (tmp_path / "out", None), ("chosen", "plant.yaml", None)]  # type: ignore[list-item]
+    assert asked == expected
+
+
 @pytest.mark.parametrize(("t_ns", "entries", "found"), [(5, 2, "a rest"), (6, 2, None), (5, 3, None)])
 def test_the_rest_is_compared_with_that_of_the_same_snapshot(
     t_ns: int, entries: int, found: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

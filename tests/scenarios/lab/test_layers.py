@@ -166,7 +166,7 @@ def test_a_later_stage_comes_after_an_earlier_one() -> None:
     for kind in (Half, Plus):
         kind(board.network, "ra", Evidence("x"), 1)
     board.pwm.drive(2, 0.8, 0.6)
-    assert board.written[-1] == (2, pytest.approx(0.5), 0.6)
+    assert board.written[-1] == pytest.approx((2, 0.5, 0.6))
 
 
 @pytest.mark.parametrize("first", [Plus, Cut])

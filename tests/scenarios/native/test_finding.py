@@ -12,13 +12,19 @@ from scenarios.native import finder, stamp
 from scenarios.native.finder import PURE, Finder, Rooms, compiled, ours_first, plain, use
 
 
+def entries() -> list[object]:
+    """Those of ours on sys.meta_path."""
+    return [each for each in sys.meta_path if isinstance(each, Finder | Rooms)]
+
+
 class Desk:
-    """A sys.meta_path of its own and a library of which the stamp says what a test wants."""
+    """A sys.meta_path without our entries and a library of which the stamp says what a test wants."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.stamp: dict[str, object] | None = {"modules": {"schmidt_absent": "absent.so"}}
         self.reason: str | None = None
-        monkeypatch.setattr(sys, "meta_path", [])
+        others = [each for each in sys.meta_path if not isinstance(each, Finder | Rooms)]
+        monkeypatch.setattr(sys, "meta_path", others)
         monkeypatch.setattr(finder, "read", lambda library: self.stamp)
         monkeypatch.setattr(finder, "difference", lambda stamp: self.reason)
         monkeypatch.setenv(PURE, "")
@@ -31,14 +37,14 @@ def desk(monkeypatch: pytest.MonkeyPatch) -> Desk:
 
 def test_a_library_that_fits_is_found_by_its_modules(desk: Desk, tmp_path: Path) -> None:
     use(tmp_path)
-    (found,) = sys.meta_path
+    found = sys.meta_path[0]
     assert isinstance(found, Finder) and compiled()
     assert found.find_spec("json") is None
     spec = found.find_spec("schmidt_absent")
     assert spec is not None and isinstance(spec.loader, ExtensionFileLoader)
     assert spec.origin == str(tmp_path / "absent.so")
     use(tmp_path)
-    assert len(sys.meta_path) == 1  # once
+    assert len(entries()) == 1  # once
     assert plain() and not compiled()
 
 
@@ -55,7 +61,7 @@ def test_one_that_does_not_fit_is_said_once(
     use(tmp_path)
     said = "schmidt: the compiled library was built before x.py changed; running plain (`make compiled`)\n"
     assert capsys.readouterr().err == said
-    assert not sys.meta_path and os.environ[PURE] == "1"
+    assert not entries() and os.environ[PURE] == "1"
     use(tmp_path)
     assert capsys.readouterr().err == ""
 
@@ -68,7 +74,7 @@ def test_none_an_empty_one_or_a_late_one_is_left_without_a_word(
 ) -> None:
     desk.stamp = stamp_
     use(tmp_path)
-    assert not sys.meta_path and capsys.readouterr().err == "" and os.environ[PURE] == ""
+    assert not entries() and capsys.readouterr().err == "" and os.environ[PURE] == ""
 
 
 @pytest.mark.parametrize(
@@ -87,14 +93,14 @@ def test_who_insists_on_it_is_told_why_not(
     assert str(caught.value) == f"the compiled library {said}{tail}"
     monkeypatch.setenv(PURE, "1")
     use(tmp_path)
-    assert not sys.meta_path
+    assert not entries()
 
 
 def test_our_rooms_are_found_here_and_nobody_else_s(desk: Desk) -> None:
     ours_first()
     ours_first()
-    (rooms,) = sys.meta_path
-    assert isinstance(rooms, Rooms)
+    rooms = sys.meta_path[0]
+    assert isinstance(rooms, Rooms) and len(entries()) == 1
     for name in ("plant", "calibration"):
         spec = rooms.find_spec(name)
         assert spec is not None and spec.submodule_search_locations
