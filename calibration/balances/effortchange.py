@@ -49,7 +49,7 @@ def incremental_law(frame: Frame, held: Mask, own: bool = False) -> Law | None:
     limited = (np.abs(effort) > limits.AT_LIMIT * top) & (top > limits.LIMITED)
     valid = np.isfinite(y) & np.isfinite(base).all(axis=1) & ~limited & ~resting(setpoint, frame.run)
     valid[1:] &= frame.run[1:] == frame.run[:-1]
-    valid &= ~frame.transients() | (np.abs(effort) > 2)
+    valid &= ~frame.transients()
     if own:
         valid &= usual_regime(setpoint / ARCSEC, valid)
     if valid.sum() < limits.FEWEST_FOR_A_LAW:
