@@ -120,8 +120,8 @@ def _where(s: Selection, scene: Scene, rows: Mask, found: Left) -> Left:
     if most <= limits.LEAST_SHARE:
         return found
     # what the declared terms' own errors leave over a place, where nothing has a name, is no effect
-    own = scene.force and np.sqrt(most) * np.std(e[rows]) < OWN_ERRORS * np.std((p.y - e)[rows])
-    own = own and not any(c.name != UNKNOWN for c in s.candidates)
+    nameless = scene.force and all(c.name == UNKNOWN for c in s.candidates)
+    own = nameless and np.sqrt(most) * np.std(e[rows]) < OWN_ERRORS * np.std((p.y - e)[rows])
     where = f"over {place.words}{how}"
     return replace(found, domain=None if own else place.domain, where=where, share=most)
 
@@ -245,7 +245,8 @@ def beyond_names(s: Selection, scene: Scene) -> tuple[Selection, Selection, list
         while more.chosen and larger_than_the_response(more, 0):
             offered = [c for c in offered if c.key != more.candidates[0].key]
             more = select(beside_names, offered, most=1, before=s.looked_at)
-        more = more if s.chosen else leave_out(more, within_own_errors)
+        if not s.chosen:
+            more = leave_out(more, within_own_errors)
         s.refused += more.refused
         # what is little is no function of anything, unless most of it goes with that
         if not more.chosen or (scene.force and little and not clear(more)):
