@@ -11,13 +11,19 @@ from calibration.names import (
     supply_sag,
 )  # fmt: skip
 from calibration.names.scene import Scene
-from tests.calibration.names.made import PERIOD_S, drive
-from tests.calibration.names.test_electric_names import effects, two, volts
-
-ROWS, R, K, V = 2000, 2.0, 0.4, 24.0
-T: np.ndarray = PERIOD_S * np.arange(ROWS)
-DUTY: np.ndarray = 0.3 * np.sin(2 * np.pi * T / 7)
-CURRENT, RATE = 1.5 * np.cos(T), 3.0 * np.sin(T / 2)
+from tests.calibration.names.made import drive
+from tests.calibration.names.test_electric_names import (
+    CURRENT,
+    DUTY,
+    RATE,
+    ROWS,
+    K,
+    T,
+    V,
+    effects,
+    two,
+    volts,
+)
 
 
 def test_a_supply_sags_by_what_is_drawn() -> None:
