@@ -1,7 +1,7 @@
 """One function of a load, or of a temperature, in the place of several functions of the motion."""
 
+from calibration.decide.drive import OTHER_COLUMNS
 from calibration.decide.parameters import finding_of
-from calibration.decide.rules import OTHER_COLUMNS
 from calibration.decide.select import select
 from calibration.decide.selection import Refusal, Selection
 from calibration.decide.thresholds import AS_MUCH, STILL_MISSING

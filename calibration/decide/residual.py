@@ -12,15 +12,15 @@ from calibration.balances.candidate import Candidate
 from calibration.balances.pickup import TOP, pick_up
 from calibration.balances.view import View
 from calibration.decide import thresholds as limits
-from calibration.decide.parameters import finding_of
-from calibration.decide.rules import (
+from calibration.decide.drive import (
     EXPECTED,
     clear,
     displaced,
     larger_than_the_response,
-    leave_out,
     within_own_errors,
 )
+from calibration.decide.parameters import finding_of
+from calibration.decide.rules import leave_out
 from calibration.decide.select import select
 from calibration.decide.selection import Selection
 from calibration.finding import UNKNOWN, Finding, Parameter

@@ -9,6 +9,8 @@ from calibration.balances.problem import Problem
 from calibration.decide import rules
 from calibration.decide import thresholds as limits
 from calibration.decide.accept import SHORT, equivalents, refuse, scores, too_small
+from calibration.decide.drive import EXPECTED
+from calibration.decide.energy import negative, signed
 from calibration.decide.heldout import cross_validate
 from calibration.decide.refine import Rest, polish, settled
 from calibration.decide.scan import Contender, few, fit_with, look
@@ -86,11 +88,11 @@ class _Search:
 
     def expect(self) -> None:
         """Accept what is expected by itself, before anything is searched for."""
-        for c in self._testable([c for name in rules.EXPECTED for c in self.candidates if c.name == name]):
+        for c in self._testable([c for name in EXPECTED for c in self.candidates if c.name == name]):
             found = self.accepted(self.picks, [c], tries=1, further=False)
             more = self.picks.keep([*self.picks.chosen, *found])
             # along one speed either friction is the other, and both are large
-            if not (bad := rules.negative(more, SURE_Z)) or bad == rules.negative(self.picks, SURE_Z):
+            if not (bad := negative(more, SURE_Z)) or bad == negative(self.picks, SURE_Z):
                 self.picks = more
 
     def _testable(self, some: list[Candidate]) -> list[Candidate]:
@@ -123,7 +125,7 @@ class _Search:
         replaced = False
         for k in range(len(self.picks.chosen)):
             first, *later = self.picks.candidates[k:]
-            if first.name in rules.EXPECTED:
+            if first.name in EXPECTED:
                 continue
             shares = (_shared(self.picks.problem, first, c) for c in later)
             if replaced or any(share > limits.APART for share in shares):
@@ -131,7 +133,7 @@ class _Search:
         self.picks = rules.leave_out(self.picks, rules.needless(self.margin), rules.lesser_of_one_order)
         for k in range(len(self.picks.chosen)):
             self.picks = _polished(self.picks, k)
-        self.picks = rules.signed(self.picks)
+        self.picks = signed(self.picks)
 
     def _look_again(self, k: int) -> bool:
         """What was picked while the others were missing may be another's name; whether it is."""

@@ -62,9 +62,19 @@ class Selection:
     @property
     def worth(self) -> list[float]:
         """Share of the held-out mean square that each effect takes off beside the others."""
-        now, whole = self.held.after**2, self.held.before**2
-        left = [self.without(k).held.after ** 2 for k in range(len(self.chosen))]
-        return [(x - now) / whole if whole > 0 else 0.0 for x in left]  # no rows held out: not a number
+        whole = self.held.before**2
+        # no rows held out: not a number
+        return [(x.left - self.left) / whole if whole > 0 else 0.0 for x in self.each_left_out]
+
+    @property
+    def left(self) -> float:
+        """Mean square of what is left on the held-out rows; NaN where they are too few."""
+        return self.held.after**2
+
+    @property
+    def each_left_out(self) -> list[Selection]:
+        """The selection without its first effect, without its second, and so on."""
+        return [self.without(k) for k in range(len(self.chosen))]
 
     def put(self, k: int, other: Contender) -> Selection:
         """The same with another effect in the place of `k`."""

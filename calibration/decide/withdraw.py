@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from calibration.decide.rules import negative
+from calibration.decide.energy import negative
 from calibration.decide.selection import Selection
 from calibration.decide.thresholds import LUCK_Z
 from calibration.finding import UNKNOWN, Finding, Parameter

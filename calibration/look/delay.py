@@ -8,8 +8,8 @@ from scipy.optimize import minimize_scalar
 
 from calibration.balances.problem import Problem
 from calibration.balances.view import View
+from calibration.decide.drive import dominant
 from calibration.decide.residual import MOST_LEFT, part_left
-from calibration.decide.rules import dominant
 from calibration.decide.selection import Selection
 from calibration.decide.thresholds import AS_MUCH, CLEAR_SHARE, PLAINLY, REMAINDER
 from calibration.finding import NORMAL, Finding
@@ -109,7 +109,7 @@ def _settled(delay: Finding, declared: Selection, made: Make, find: Find) -> tup
     found = find(again)
     (one, _, _), (rival, _, _), before = found, late, declared.held.before**2
     less, few = one.held.after < rival.held.after, len(one.chosen) < len(rival.chosen)
-    if not less and not (few and before - one.held.after**2 > AS_MUCH * (before - rival.held.after**2)):
+    if not less and not (few and before - one.left > AS_MUCH * (before - rival.left)):
         return delay, moved, late
     spread = float(np.hypot(error / NORMAL, (other - p.value) / 2))
     return late_column(delay.note, other, spread, delay.share), again, found

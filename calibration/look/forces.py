@@ -138,7 +138,7 @@ def _instead(steady: Timed, slow: Timed) -> bool:
     """Whether effects of one size for all files explain what an offset fitted anew in every file does, or it
     explains nothing."""
     one, other = steady.found[0], slow.found[0]
-    much = one.held.taken > AS_MUCH * (one.held.before**2 - other.held.after**2)
+    much = one.held.taken > AS_MUCH * (one.held.before**2 - other.left)
     return one.held.after <= other.held.after or (bool(one.chosen) and not other.chosen and much)
 
 

@@ -6,7 +6,9 @@ from calibration.arrays import Array
 from calibration.balances.candidate import Candidate
 from calibration.balances.problem import Problem
 from calibration.balances.view import View
-from calibration.decide import rules
+from calibration.decide import drive
+from calibration.decide.energy import feeds_energy, signed
+from calibration.decide.rules import leave_out
 from calibration.decide.select import select
 from calibration.decide.selection import Selection
 from calibration.decide.thresholds import AS_MUCH, NOISE_SHARE, STILL_MISSING
@@ -86,12 +88,10 @@ def _search(view: View, problem: Problem) -> tuple[Selection, Scene]:
             break
     assert s is not None
     s = one_line(s, scene)
-    s = rules.signed(
-        rules.leave_out(s, rules.within_bounds(view.resolved), rules.cancelled, rules.within_own_errors)
-    )
+    s = signed(leave_out(s, drive.within_bounds(view.resolved), drive.cancelled, drive.within_own_errors))
     # again: what was left out moves the sizes of the others
-    s = rules.signed(rules.leave_out(s, rules.remainder, rules.worth_little))
-    return rules.leave_out(s, rules.feeds_energy, rules.harmful, rules.below_floor, rules.of_the_steps), scene
+    s = signed(leave_out(s, drive.remainder, drive.worth_little))
+    return leave_out(s, feeds_energy, drive.harmful, drive.below_floor, drive.of_the_steps), scene
 
 
 def _select(
@@ -123,7 +123,7 @@ def _takes_more(one: Selection, other: Selection) -> bool:
     fraction = other.held.after > STILL_MISSING * one.held.after
     few, many = (sum(c.cost for c in s.candidates) for s in (one, other))
     fewer = few < many and one.held.after < other.held.after
-    shows = other.held.after > other.problem.floor or rules.clear(one)
+    shows = other.held.after > other.problem.floor or drive.clear(one)
     return bool(one.chosen) and (more or fraction or fewer) and shows
 
 

@@ -15,7 +15,7 @@ from calibration.arrays import Array
 from calibration.balances.problem import Problem
 from calibration.balances.slowoffset import SLOW
 from calibration.balances.view import View
-from calibration.decide import rules
+from calibration.decide.energy import signed
 from calibration.decide.heldout import cross_validate
 from calibration.decide.parameters import interval
 from calibration.decide.scan import fit_with
@@ -90,7 +90,7 @@ def _with_gap(s: Selection, scene: Scene) -> Selection:
     if not share > MARGIN:
         return s
     kept = replace(best.chosen[-1], held=replace(best.held, share=share))
-    return rules.signed(best.keep([*s.chosen, kept]))
+    return signed(best.keep([*s.chosen, kept]))
 
 
 def _placed(s: Selection, places: list[int], view: View) -> dict[int, Array]:

@@ -10,7 +10,7 @@ from calibration.balances.candidate import Candidate
 from calibration.balances.thresholds import FEWEST_MOVING
 from calibration.balances.torque import Torque, Transmission, torque_problem
 from calibration.decide.broadband import wind
-from calibration.decide.rules import cancelling
+from calibration.decide.drive import cancelling
 from calibration.decide.select import select
 from calibration.decide.selection import Selection
 from calibration.decide.thresholds import FEWEST_BLOCKS, SAME_ORDER_SHARE

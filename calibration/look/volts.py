@@ -14,9 +14,11 @@ from calibration.balances.problem import Problem
 from calibration.balances.thresholds import FEWEST_ROWS
 from calibration.balances.view import View
 from calibration.balances.volts import volts_balance
+from calibration.decide.drive import worth_little
+from calibration.decide.energy import signed
 from calibration.decide.parameters import findings_of
 from calibration.decide.residual import beyond_names, left_over, settle
-from calibration.decide.rules import leave_out, signed, worth_little
+from calibration.decide.rules import leave_out
 from calibration.decide.select import select
 from calibration.inputs.declaration import Response
 from calibration.look.axis_result import AxisResult

@@ -11,7 +11,7 @@ from calibration.balances.agreement import velocity_against_position
 from calibration.balances.candidate import Candidate
 from calibration.balances.problem import Problem
 from calibration.balances.view import view_of
-from calibration.decide.rules import signed
+from calibration.decide.energy import signed
 from calibration.decide.select import select
 from calibration.inputs.logs import read_drive
 from calibration.inputs.rigfile import load_rig

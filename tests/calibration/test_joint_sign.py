@@ -3,7 +3,7 @@
 import numpy as np
 
 from calibration.balances.candidate import Candidate
-from calibration.decide.rules import signed
+from calibration.decide.energy import signed
 from calibration.decide.scan import fit_with
 from calibration.decide.selection import Selection
 from tests.calibration.test_statistics import regression

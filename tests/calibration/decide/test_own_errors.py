@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from calibration.decide.rules import leave_out, within_own_errors
+from calibration.decide.drive import within_own_errors
+from calibration.decide.rules import leave_out
 from calibration.decide.scan import fit_with
 from calibration.decide.selection import Selection
 from calibration.finding import UNKNOWN

@@ -7,20 +7,16 @@ import numpy as np
 import pytest
 
 from calibration.balances.candidate import Candidate
-from calibration.decide import rules
-from calibration.decide.rules import (
+from calibration.decide import drive
+from calibration.decide.drive import (
     below_floor,
     cancelling,
-    feeds_energy,
     larger_than_the_response,
-    lesser_of_one_order,
-    needless,
-    negative,
     of_the_steps,
-    signed,
-    superfluous,
     within_bounds,
 )
+from calibration.decide.energy import feeds_energy, negative, signed
+from calibration.decide.rules import lesser_of_one_order, needless, superfluous
 from calibration.decide.scan import fit_with
 from calibration.decide.selection import Selection
 from calibration.finding import UNKNOWN, Parameter
@@ -97,7 +93,7 @@ def test_a_shape_of_no_width_no_order_or_no_resonance_goes(
 ) -> None:
     s = of(A, one("damaged_tooth", A))
     told: dict[str, Parameter] = {}
-    monkeypatch.setattr(rules, "parameters_of", lambda s, k: told)
+    monkeypatch.setattr(drive, "parameters_of", lambda s, k: told)
     assert within_bounds(0.1)(s) is None
     told[name] = BOUNDS[name]
     words = {"width": "as wide as nothing", "order": "of any order", "damping": "no damping of a resonance"}
@@ -304,7 +300,7 @@ def test_below_the_floor_names_stay_that_rows_off_the_steps_need(
     """Spoilt rows are so loud that no half of all goes with the name; of clean rows most does."""
     y = size * A + np.where(CLEAN, 0.0, 10 * B)
     s = of(y, one("brake_drag", A), floor=20.0, resolved=(CLEAN, noise))
-    assert not rules.clear(s) and s.held.before < 20.0
+    assert not drive.clear(s) and s.held.before < 20.0
     assert (below_floor(s) is None) == kept
     assert below_floor(of(y, one("brake_drag", A), floor=20.0)) is not None
     few = CLEAN & ~s.problem.held

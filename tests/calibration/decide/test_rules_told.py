@@ -8,11 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from calibration.decide import rules
-from calibration.decide.heldout import HeldOut
-from calibration.decide.rules import (
+from calibration.decide import drive
+from calibration.decide.drive import (
     below_floor,
-    below_surrogates,
     cancelled,
     clear,
     displaced,
@@ -21,6 +19,8 @@ from calibration.decide.rules import (
     remainder,
     worth_little,
 )
+from calibration.decide.heldout import HeldOut
+from calibration.decide.rules import below_surrogates, needless
 from calibration.finding import UNKNOWN
 from tests.calibration.decide.made import term
 
@@ -33,7 +33,7 @@ class Told:
     """A selection of which only the mean squares on held-out rows are known, by the effects' initials."""
 
     names: Sequence[str]
-    left: dict[str, float]
+    leaves: dict[str, float]
     before: float = 100.0
     problem: Any = field(default_factory=lambda: SimpleNamespace(floor=0.0))
     bare: Any = field(default_factory=lambda: SimpleNamespace(residual=np.zeros(4)))
@@ -48,9 +48,17 @@ class Told:
 
     @property
     def held(self) -> HeldOut:
-        after = self.left["".join(sorted(n[0] for n in self.names))]
+        after = self.leaves["".join(sorted(n[0] for n in self.names))]
         share = 1 - after / self.before
         return HeldOut(before=self.before**0.5, after=after**0.5, share=share, z=9.0)
+
+    @property
+    def left(self) -> float:
+        return self.held.after**2
+
+    @property
+    def each_left_out(self) -> list["Told"]:
+        return [self.without(k) for k in range(len(self.names))]
 
     def keep(self, chosen: Sequence[Any]) -> "Told":
         return replace(self, names=[x.candidate.name for x in chosen])
@@ -177,10 +185,10 @@ def test_a_smooth_function_displaces_a_name_of_its_domain(
 def test_of_two_that_cancel_the_one_whose_absence_leaves_less_goes(
     left: dict[str, float], gone: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(rules, "cancelling", lambda s: (0, 1))
+    monkeypatch.setattr(drive, "cancelling", lambda s: (0, 1))
     s = Told(["brake_drag", "play"], {"bp": 4.0, **left})
     assert cancelled(s) == (gone, f"cancels against {s.names[1 - gone]}")  # type: ignore[arg-type]
-    monkeypatch.setattr(rules, "cancelling", lambda s: None)
+    monkeypatch.setattr(drive, "cancelling", lambda s: None)
     assert cancelled(s) is None  # type: ignore[arg-type]
 
 
@@ -207,4 +215,4 @@ def test_an_effect_with_less_evidence_than_surrogates_goes(evidence: float, goes
 
 
 def test_of_one_name_alone_nothing_is_compared_with_others() -> None:
-    assert rules.needless(0.05)(Told([UNKNOWN], {})) is None  # type: ignore[arg-type]
+    assert needless(0.05)(Told([UNKNOWN], {})) is None  # type: ignore[arg-type]

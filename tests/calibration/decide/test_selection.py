@@ -8,20 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from calibration.balances.candidate import Candidate
-from calibration.decide.rules import (
-    below_floor,
-    dominant,
-    each,
-    feeds_energy,
-    harmful,
-    leave_out,
-    lesser_of_one_order,
-    negative,
-    of_the_steps,
-    remainder,
-    superfluous,
-    worth_little,
-)
+from calibration.decide.drive import below_floor, dominant, harmful, of_the_steps, remainder, worth_little
+from calibration.decide.energy import feeds_energy, negative
+from calibration.decide.rules import each, leave_out, lesser_of_one_order, superfluous
 from calibration.decide.scan import Contender, fit_with
 from calibration.decide.selection import Selection
 from calibration.statistics.whitening import Whitener

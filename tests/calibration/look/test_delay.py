@@ -26,7 +26,8 @@ def taken(curve: tuple[float, int], declared: tuple[float, int]) -> tuple[float,
 
     def find(p: Any) -> Any:
         after, names = curve if p.delay_s == CURVE_S else declared
-        return SimpleNamespace(held=SimpleNamespace(after=after), chosen=[None] * names), None, []
+        s = SimpleNamespace(held=SimpleNamespace(after=after), left=after**2, chosen=[None] * names)
+        return s, None, []
 
     first = late_column("late", CURVE_S, ERROR_S)
     bare: Any = SimpleNamespace(held=SimpleNamespace(before=BEFORE))
