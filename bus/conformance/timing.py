@@ -23,8 +23,8 @@ def queueing_s(messages: Sequence[Any], identifier: int) -> float:
     """Longest a frame waits for the bus, seconds: one frame of less, all of more priority.
 
     Response time analysis without release jitter (Davis, Burns, Bril, Lukkien, Real-Time Systems 35, 2007,
-    eq. 5). messages: of the DBC, `cycle_time` in ms; those without one (commands and replies) are taken to
-    come once. inf: the bus is full.
+    eq. 5). messages: of the DBC, `cycle_time` in ms; of those without one (commands and replies) one
+    is taken to come. inf: the bus is full.
     """
     higher = [message for message in messages if message.frame_id < identifier]
     periods = [message.cycle_time / 1e3 for message in higher if message.cycle_time]

@@ -11,22 +11,22 @@ from calibration.arrays import Array
 def turning_points(angle: Array, run: NDArray[np.int64], travel: float) -> NDArray[np.bool_]:
     """True at every extreme that is followed by at least `travel` the other way, and where a run starts."""
     out = np.zeros(len(angle), dtype=bool)
-    heading, at = 0.0, 0
+    start = low = high = heading = 0  # low, high: the extremes since the last turn
     values, runs = angle.tolist(), run.tolist()
     for k in range(1, len(values)):
         if runs[k] != runs[k - 1]:
             out[k] = True
-            heading, at = 0.0, k
+            start = low = high = k
+            heading = 0
             continue
-        ahead = (values[k] - values[at]) * (heading or 1.0)
-        if heading == 0.0:
-            if abs(ahead) > travel:
-                heading, at = (1.0 if ahead > 0 else -1.0), k
-        elif ahead > 0:
-            at = k
-        elif -ahead > travel:
-            out[at] = True
-            heading, at = -heading, k
+        low = k if values[k] < values[low] else low
+        high = k if values[k] > values[high] else high
+        if heading <= 0 and values[k] - values[low] > travel:
+            out[low] |= low > start
+            heading, high = 1, k
+        elif heading >= 0 and values[high] - values[k] > travel:
+            out[high] |= high > start
+            heading, low = -1, k
     return out
 
 

@@ -88,6 +88,8 @@ class Parameter:
             return f", in{unit}" if unit else ""
         if self.high is None:
             return f"; at least {self.low:g}{unit}"
+        if self.low is None:
+            return f"; at most {self.high:g}{unit}"
         return f"; {self.low:g}..{self.high:g}{unit}"
 
 

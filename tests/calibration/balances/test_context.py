@@ -33,6 +33,14 @@ def test_a_motion_has_a_heading_once_it_went_further_than_the_travel() -> None:
     assert marks(np.array([0.0, -1.1, 0.0]), runs(3), 1.0) == [1]
 
 
+def test_small_moves_before_the_first_heading_have_their_extremes() -> None:
+    """Up by one, down by two, up by three: either turn is followed by more than one."""
+    assert marks(np.array([0.0, 1.0, -1.0, 2.0]), runs(4), 1.0) == [1, 2]
+    assert marks(np.array([0.0, -0.5, 0.7]), runs(3), 1.0) == [1]
+    assert marks(np.array([9.0, 0.0, -0.5, 0.7]), runs(1, 3), 1.0) == [1, 2]
+    assert marks(np.array([0.0, 2.0, 0.0, 1.0, 0.0]), runs(5), 1.0) == [1]
+
+
 def test_every_run_starts_anew() -> None:
     angle = np.array([0.0, 2.0, 4.0, 4.0, 6.0, 4.5, 3.0, 0.0])
     assert marks(angle, runs(8), 1.0) == [4]

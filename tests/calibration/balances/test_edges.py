@@ -21,9 +21,9 @@ def marks(*angle: float, first: int = 0) -> list[int]:
     return np.flatnonzero(turning_points(np.array(angle), label, 1.0)).tolist()
 
 
-def test_a_heading_needs_the_whole_travel_from_the_run_s_first_row() -> None:
-    assert marks(0.0, 0.9, -0.3) == [] and marks(0.0, -3.0, -2.4) == []
-    assert marks(0.0, 2.0, 5.0, 5.5, 4.2, first=2) == [2]
+def test_a_first_extreme_turns_where_the_travel_follows() -> None:
+    assert marks(0.0, 0.9, -0.3) == [1] and marks(0.0, -3.0, -2.4) == []
+    assert marks(0.0, 2.0, 5.0, 5.5, 4.2, first=2) == [2, 3]
 
 
 @pytest.mark.parametrize(("frames", "mean"), [(1, 4.0), (2, 4.5)])

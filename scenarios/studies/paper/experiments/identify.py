@@ -79,6 +79,8 @@ def averaged_step(make: Callable[[], Bench]) -> Array:
     effort = float(closed.effort.mean())
     size = COUNTER_SHARE * max(1, round(STEP_SHARE * effort / COUNTER_SHARE))
     low, high = round(effort), round(effort) + size
+    if not low:
+        raise ValueError("no effort keeps the speed: a step from nothing has no speed of its own")
     before = bench.open_loop(low, SETTLE_S)
     speed = {low: float(before.rate[-BASE:].mean()), high: float(before.rate[-BASE:].mean()) * high / low}
     found, place = [], 0.0

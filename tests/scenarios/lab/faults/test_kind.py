@@ -70,6 +70,7 @@ def test_numbers_come_in_base_units_and_bounds_are_allowed(
         (FREE, float("nan"), "factor: nan is no number"),
         (Parameter("a", "b", "angle"), None, "a: None is no number, in arcsec"),
         (Parameter("a", "b", "whole", low=1), None, "a: None is no number; at least 1"),
+        (Parameter("a", "b", "number", high=3), 4, "a: 4 is out of range; at most 3"),
     ],
 )
 def test_a_refusal_says_the_range(parameter: Parameter, given: Any, said: str) -> None:

@@ -126,6 +126,12 @@ def test_a_log_without_its_step_is_an_error() -> None:
         averaged_step(lambda: bench)
 
 
+def test_an_axis_that_no_effort_keeps_going_has_no_steps() -> None:
+    bench = StubBench(lambda loop, value, seconds: log_of(600.0, seconds, 0.0))
+    with pytest.raises(ValueError, match=r"^no effort keeps the speed"):
+        averaged_step(lambda: bench)
+
+
 def test_identify_fits_what_the_steps_gave(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(identify, "fit", lambda response: FirstOrder(float(response[-1]), 1.0, 2.0))
     assert identify.identify(lambda: Steps(140.0).bench) == FirstOrder(near(2.0), 1.0, 2.0)
