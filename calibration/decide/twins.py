@@ -10,12 +10,13 @@ import numpy as np
 
 from calibration.arrays import Array
 from calibration.balances.candidate import Candidate, sine_columns
+from calibration.decide.drive import EXPECTED
 from calibration.decide.heldout import compare
 from calibration.decide.scan import Contender, fit_with
 from calibration.decide.selection import Selection
-from calibration.decide.thresholds import LUCK_Z
+from calibration.decide.thresholds import DOMINANT, LUCK_Z
 from calibration.finding import UNKNOWN
-from calibration.names import gravity_imbalance
+from calibration.names import NAMES, gravity_imbalance
 from calibration.names.brake_drag import CHANGES
 from calibration.names.lines import CLOCKED, on_clock
 from calibration.names.scene import Scene
@@ -66,6 +67,23 @@ def weight_first(s: Selection, scene: Scene) -> Selection:
             if compare(s.problem, both.model, s.model, s.after.whitener).z < LUCK_Z:
                 held = compare(s.problem, others.model, s.put(k, found).model, s.after.whitener)
                 s = s.put(k, replace(found, held=held))
+    return s
+
+
+def told_by_the_speed(s: Selection, scene: Scene) -> Selection:
+    """Of Coulomb's and viscous friction alone either has the other as its twin, where that takes as much.
+
+    As much is DOMINANT of it, which is what an imperfect model of the one leaves to the other.
+    """
+    found = [k for k, c in enumerate(s.candidates) if c.name in EXPECTED]
+    if len(found) != 1:
+        return s
+    (k,), others = found, s.without(found[0])
+    c, most = s.candidates[k], others.left - DOMINANT * (others.left - s.left)
+    for other in [one for name in EXPECTED if name != c.name for one in NAMES[name].columns(scene)]:
+        swapped = fit_with(s.problem, others.columns, other)
+        if swapped is not None and s.put(k, swapped).left < most:
+            s = s.put(k, replace(s.chosen[k], candidate=replace(c, twins=(*c.twins, other.name))))
     return s
 
 

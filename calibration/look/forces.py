@@ -18,7 +18,7 @@ from calibration.decide.parameters import findings_of
 from calibration.decide.residual import beyond_names, left_over, of_one_domain, quick_lines, settle
 from calibration.decide.selection import Selection
 from calibration.decide.thresholds import AS_MUCH
-from calibration.decide.twins import told_by_the_clock, told_by_the_way, weight_first
+from calibration.decide.twins import told_by_the_clock, told_by_the_speed, told_by_the_way, weight_first
 from calibration.decide.verdict import ROWS
 from calibration.decide.withdraw import as_told, of_calibrated, unnamed
 from calibration.finding import UNKNOWN, Finding, Parameter
@@ -159,7 +159,9 @@ def _told(view: View, when: Timed, notes: list[str]) -> Balance:
     """The parts of the answer: floor, names that stay, what no name explains, controls."""
     channel, unit = view.response.channel, view.angle_unit
     s, scene, bounds = when.found
-    s = weight_first(told_by_the_way(told_by_the_clock(where_known(s, view), scene), scene), scene)
+    s = where_known(s, view)
+    for told in (told_by_the_clock, told_by_the_way, told_by_the_speed, weight_first):
+        s = told(s, scene)
     problem = s.problem
     floor, source = floor_of(view, problem)
     wind = wound_up(view, s) if floor else 0.0

@@ -14,14 +14,16 @@ from calibration.decide.selection import Selection
 from calibration.decide.twins import (
     one_line,
     told_by_the_clock,
+    told_by_the_speed,
     told_by_the_way,
     weight_first,
 )
 from calibration.finding import UNKNOWN
-from calibration.names import gravity_imbalance
+from calibration.names import NAMES, gravity_imbalance
 from calibration.names.lines import CLOCKED
 from calibration.names.scene import Scene
 from tests.calibration.decide.made import PERIOD_S, line, problem, term
+from tests.calibration.names.made import drive
 
 ROWS = 4000
 T = PERIOD_S * np.arange(ROWS)
@@ -210,3 +212,26 @@ def test_lines_part_by_a_cycle_within_the_travel_at_any_speed(cells: float, line
     clock = term(CLOCKED, shape(np.array([hertz])), shape=shape, **more)
     s = chosen(np.cos(2 * np.pi * HERTZ * T), place(), clock)
     assert len(one_line(s, scene()).chosen) == lines
+
+
+def strokes(quick: float, rows: int = 250) -> Scene:
+    """Sixteen strokes there and back, each second pair `quick` times as fast; Coulomb friction of 2 N."""
+    ways = np.tile([1.0, -1.0, quick, -quick], 4)
+    speed = np.repeat(ways, rows)
+    held = np.arange(ROWS) >= 3 * ROWS // 4
+    # what neither explains is a fifth of it: the speeds have to tell more than that
+    y = 2.0 * np.sign(speed) + 0.4 * LUCK
+    return drive(PERIOD_S * np.cumsum(speed), y=y, base=np.ones((ROWS, 1)), held=held)
+
+
+@pytest.mark.parametrize(("quick", "twins"), [(1.05, ("viscous_change",)), (3.0, ())])
+def test_friction_at_speeds_that_hardly_differ_is_either(quick: float, twins: tuple[str, ...]) -> None:
+    made = strokes(quick)
+    p = made.problem
+    names = ("coulomb_change", "viscous_change")
+    coulomb, viscous = (fit_with(p, p.base, c) for name in names for c in NAMES[name].columns(made))
+    assert coulomb is not None and viscous is not None
+    one = told_by_the_speed(Selection.of(p, [coulomb]), made)
+    assert one.candidates[0].twins == twins
+    both = Selection.of(p, [coulomb, viscous])
+    assert told_by_the_speed(both, made) is both
