@@ -2,6 +2,7 @@
 whole analysis is made once more on the corrected logs."""
 
 from dataclasses import replace
+from math import prod
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,10 +30,11 @@ from plant.units import ARCSEC
 UNDONE = (DELAY.name, GAP.name)  # faults of a column that can be undone
 #: columns of a log by their number in a plant file
 LATE = {1: ("position",), 2: ("velocity",), 3: ("current_a", "current_b"), 4: ("motor_a", "motor_b")}
-FALLS = 0.99  # of the held-out error of a channel, that an applied effect must leave less than. ASSUMPTION
-RISES = 1.05  # of another channel's, that it may leave at most. ASSUMPTION
-MUCH = 0.5  # share, of a channel's error: one that falls below it falls by much (ASSUMPTION)
-AT_MOST = 1.15  # times its error, that another channel's may then rise to (ASSUMPTION)
+# of the product of all channels' held-out errors, that an applied effect must leave less than. ASSUMPTION
+FALLS = 0.99
+# times a channel's error, that it may leave of one at most: rows are left out where a gap stood, and what the
+# others leave is another sample of the same. ASSUMPTION
+AT_MOST = 1.15
 
 # of the reading's noise per row, rms: two rows differ by so much once in 1e8, so it has moved. arithmetic
 MOVED = 8.0
@@ -186,11 +188,8 @@ def without(result: AxisResult, f: Finding, why: Refusal) -> AxisResult:
 def judged(before: dict[str, float], again: AxisResult, f: Finding) -> Refusal | None:
     """None when the held-out error falls once the effect is applied; else why it was not the effect."""
     after = {k: s.held.before for k, s in again.selections.items() if k in before}
-    falls = [k for k, a in after.items() if a < FALLS * before[k]]
-    rises = [k for k, a in after.items() if a > max(RISES * before[k], again.floors.get(k, 0.0))]
-    # rows are left out where a gap stood: what the others leave is another sample of the same
-    much = min((a / before[k] for k, a in after.items() if before[k] > 0), default=1.0) < MUCH
-    if falls and not [k for k in rises if not much or after[k] > AT_MOST * before[k]]:
+    rises = [k for k, a in after.items() if a > max(AT_MOST * before[k], again.floors.get(k, 0.0))]
+    if prod(a / before[k] for k, a in after.items() if before[k] > 0) < FALLS and not rises:
         return None
     said = ", ".join(f"{k} {before[k]:.3g} to {a:.3g}" for k, a in after.items())
     return Refusal(f.name, f"applied, the held-out error does not fall: {said}")
