@@ -132,8 +132,8 @@ def _own_offsets(view: View) -> bool:
 def term_of(view: View, name: str) -> list[Term]:
     """A term of the declared model at full rate."""
     unit, x = view.unit, view.angle_unit
-    if name == "gravity":
-        return _gravity(view)
+    if name.startswith("gravity"):
+        return [term for term in _gravity(view) if term[0].startswith(name)]
     files = np.unique(view.file)
     drives = -1.0 if view.response.channel == "acceleration" else 1.0
     if name == PER_FILE or (name == "offset" and len(files) > 1 and _own_offsets(view)):

@@ -39,6 +39,9 @@ LEAST_WIDTH = 0.5  # rows, of the speed's smoothing: a central difference, two r
 RESOLVED = 6.0  # steps of the position's sensor that a travel must have before its shape is seen. ASSUMPTION
 # rows per reading of a column, from where on its noise is told reading by reading. ASSUMPTION: not a few gaps
 SELDOM = 1.5
+HALF = 0.5  # part of 1, from where on a direction is one. definition
+# share of the rows in either direction: fewer say nothing of a difference between the two. ASSUMPTION
+BOTH = 0.05
 
 
 @dataclass(kw_only=True)
@@ -112,6 +115,12 @@ class View:
     def top(self) -> float:
         """Usual top speed, position units per s."""
         return float(np.quantile(np.abs(self.speed[self.ok]), 0.95)) if self.ok.any() else 0.0
+
+    @property
+    def both(self) -> bool:
+        """True when the drive goes both ways."""
+        d = self.direction[self.ok]
+        return bool(min(np.mean(d > HALF), np.mean(d < -HALF)) > BOTH) if len(d) else False
 
     @property
     def step(self) -> int:

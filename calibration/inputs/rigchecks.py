@@ -59,14 +59,16 @@ def _one_drive(rig: Rig, data: dict[str, Any]) -> Iterator[str]:
     rubs = force and "coulomb" in ({*data.get("estimate", ("coulomb",))} | known)
     if "friction_law" in data and not rubs:
         yield "friction_law: is the shape of the term coulomb, which no response has; estimate it"
-    if both := estimated & known:
+    parts = {term for term in known if term.startswith("gravity")}
+    weighed, joints = "gravity" in estimated, [name for name in JOINTS if name in columns]
+    if both := estimated & known or (parts if weighed else set()):
         yield f"constants.{min(both)}: is estimated too; a number is known or estimated"
     if "acceleration" in channels and "inertia" in estimated | known:
         yield "inertia: a response of acceleration is a balance per unit of inertia; leave it out"
     used = {"time", "position", "velocity", "acceleration", "temperature", "supply", "reference", "applied"}
     used |= {*channels} | {r.divide_by for r in responses if r.divide_by}
     used |= {"effort", "force", "current"} if "position2" in channels else set()
-    used |= {"load", *JOINTS} if "gravity" in estimated else {*JOINTS} if "inertia" in estimated else set()
+    used |= {"load", *JOINTS} if weighed or parts else {*JOINTS} if "inertia" in estimated else set()
     used |= {"effort"} if "controller" in data else set()
     used |= {"voltage", "duty", "current"} if {"voltage", "duty"} & set(columns) else set()
     for name, where in columns.items():
@@ -74,13 +76,15 @@ def _one_drive(rig: Rig, data: dict[str, Any]) -> Iterator[str]:
             yield f"columns.{name}.steps: must be in the order of their times"
         if where.integrated and name == "time":
             yield "columns.time.integrated: time is not integrated; leave it out"
-    if "load" in columns and "gravity" not in estimated:
+    if parts and len(joints) > 1:
+        yield f"constants.{min(parts)}: of several joints the weights are estimated; add gravity to estimate"
+    if "load" in columns and not (weighed or parts):
         yield "columns.load: acts through gravity; add it to estimate"
-    if ("applied" in columns) != ("applied" in estimated):
-        yield "columns.applied and 'applied' in estimate belong together; add the missing one"
+    if ("applied" in columns) != ("applied" in estimated | known):
+        yield "columns.applied and 'applied' in estimate or constants belong together; add the missing one"
     if {"offset", "offset_per_file"} <= estimated | known:
         yield "estimate: offset_per_file stands in the place of offset; leave one out"
-    for name in (name for name in JOINTS if name in columns):
+    for name in joints:
         if columns[name].unit != columns["position"].unit:
             yield f"columns.{name}.unit: must be the position's; give a scale"
     for name in (name for name in columns if name not in used):

@@ -21,10 +21,6 @@ FEWEST = 0.005  # share of the rows that must lie within a gap, a loop or a dip.
 # of a mean speed or load, its standard deviation: below, what grows with it is the constant one. ASSUMPTION
 VARIES = 0.1
 LEAST_K = 0.5  # of temperature, before a coefficient of it means anything. ASSUMPTION
-# share of the rows in either direction: fewer say nothing of a difference between the two. ASSUMPTION
-BOTH = 0.05
-
-HALF = 0.5  # part of 1, from where on a direction is one. definition
 
 #: kinds of balance that a name can be seen in: forces, two sensors, volts; of an axis with two motors also
 #: the roller's rate against the axis', on the analysis grid and at the log's full rate; a speed by itself
@@ -142,8 +138,7 @@ class Scene:
     @property
     def both(self) -> bool:
         """True when the drive goes both ways."""
-        d = self.view.direction[self.view.ok]
-        return bool(min(np.mean(d > HALF), np.mean(d < -HALF)) > BOTH) if len(d) else False
+        return self.view.both
 
     @property
     def temperature(self) -> Array | None:

@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.balances.filters import by_piece
+from calibration.balances.view import HALF
 from calibration.finding import UNKNOWN, Parameter
 from calibration.names.inplant import Facts, Made, as_found, value
 from calibration.names.name import Array, Beside, Candidate, Finding, Name, Scene, tried
-from calibration.names.scene import HALF
 
 DAMPING = 0.05  # ASSUMPTION: of a lightly damped metal structure, refined once the mode is chosen
 # part of critical, of a mode: metal structures have 0.01 to 0.1 (Altintas, Manufacturing Automation, 2012)

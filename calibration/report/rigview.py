@@ -83,14 +83,18 @@ def _power(records: list[Run], rig: Rig, response: Response) -> Iterator[str]:
         through += f" ({WINDOW * finer.wide * view.period_s:.3g} s where that shows nothing)"
     yield f"{response.channel}: {p.train.sum()} rows to fit through {through}, {p.blocks} independent blocks"
     span = float(np.ptp(view.x[view.rows][p.train]))
+    if response.is_force and not view.both:
+        yield "  it moves one way: Coulomb friction and an offset cannot be told apart"
     turns = [f"{span / g.period:.4g} of {g.name}" for g in rig.stages if g.period]
     if turns:
         yield f"  turns: {', '.join(turns)}"
+    if not rig.estimate:
+        yield f"  its terms: {', '.join(name for name, _ in p.base_labels)}"
     rest = float(np.std(p.plain_fit(p.train)[1][p.train]))
     share = least_share(p, USUAL_CANDIDATES)
-    line = f"a line of {rest * np.sqrt(2 * share):.3g} {p.unit} ({100 * share:.0f} % of it)"
-    named = line if share < 1 else "nothing: the log is too short"
-    yield f"  the declared terms leave {rest:.3g} {p.unit} rms; could be named beside it: {named}"
+    yield f"  the declared terms leave {rest:.3g} {p.unit} rms"
+    line = f"a line of {rest * np.sqrt(2 * share):.3g} {p.unit} or more, {100 * share:.0f} % of its square"
+    yield f"  could be named beside that: {line if share < 1 else 'nothing, as the log is too short'}"
 
 
 def _head(r: Run) -> str:

@@ -194,6 +194,14 @@ def test_known_terms_are_taken_off_the_response() -> None:
     assert p.y == pytest.approx(3 * v.rate(v.x)) and p.known == {"inertia": 2.0, "coulomb": 0.5}
 
 
+def test_a_known_weight_and_a_known_force_are_taken_off_the_response() -> None:
+    rig = {"estimate": ("viscous",), "constants": {"gravity_sin": 0.5, "gravity_cos": -0.25, "applied": 4.0}}
+    v, y = log(rig=rig, turn=2 * np.pi)
+    v.columns["applied"] = np.arange(len(v.t)) / len(v.t)
+    known = 0.5 * np.sin(v.x) - 0.25 * np.cos(v.x) + 4.0 * v.columns["applied"]
+    assert problem_of(v, [], []).y == pytest.approx(y - known)
+
+
 def test_a_standing_drive_s_rows_count_by_the_filter() -> None:
     """A fifth of the filter's weight may stand; without accelerations it is the direction that tells."""
     v, _ = log(filter=Filter(6.0))

@@ -282,10 +282,14 @@ def test_another_force_and_every_files_own_offset_are_terms(tmp_path: Path) -> N
     assert found == pytest.approx({"applied": 60.0, "offset_1": -3.0, "offset_2": 8.0}, rel=1e-6)
 
 
+KNOWN = "constants: {gravity_sin: {value: 3.3, unit: N m, source: a scale}}"
+
+
 @pytest.mark.parametrize(
     ("more", "says"),
     [
         ("estimate: [viscous, applied]", "belong together"),
+        (f"estimate: [gravity, offset]\n{KNOWN}", "constants.gravity_sin: is estimated too"),
         ("estimate: [offset, offset_per_file]", "offset_per_file stands in the place of offset"),
     ],
 )
