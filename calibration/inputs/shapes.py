@@ -36,11 +36,18 @@ def _records(path: Path, text: str) -> list[Any]:
         whole = json.loads(text)
     except json.JSONDecodeError:
         return list(_lines(path, text.splitlines()))
-    if isinstance(whole, dict) and whole and all(isinstance(v, list) for v in whole.values()):
-        if len({len(v) for v in whole.values()}) > 1:
-            raise CalibrationInputError(path, "is JSON whose lists have different lengths", 1)
-        return [dict(zip(whole, row, strict=True)) for row in zip(*whole.values(), strict=True)]
-    return whole if isinstance(whole, list) else [whole]
+    if not isinstance(whole, dict):
+        return list(whole)
+    lists = {key: v for key, v in whole.items() if isinstance(v, list)}
+    only, lengths = 0 < len(lists) == len(whole), {len(v) for v in lists.values()}
+    if only and len(lengths) == 1:
+        return [dict(zip(lists, row, strict=True)) for row in zip(*lists.values(), strict=True)]
+    tables = {key: v for key, v in lists.items() if v and isinstance(v[0], dict | list)}
+    if len(tables) == 1:  # the others say something about it
+        return [{key: row} for key, rows in tables.items() for row in rows]
+    if only:
+        raise CalibrationInputError(path, "is JSON whose lists have different lengths", 1)
+    return [whole]
 
 
 def _lines(path: Path, lines: list[str]) -> Iterator[Any]:

@@ -29,6 +29,9 @@ def refused(call: object, *more: object) -> str:
         ("[[1, 2], [3, 4]]", "0\t1\n1\t2\n3\t4"),
         ('{"t": 0}\n{"t": 1}\n{"t": 2, "q"', "t\n0\n1"),  # cut off
         ('{"a b": {"": 3}}', "a b.\n3"),
+        ('{"rate": 1, "names": ["t"], "data": [[1, 2], [3, 4]]}', "data.0\tdata.1\n1\t2\n3\t4"),
+        ('{"log": [{"t": 5}, {"t": 6}], "by": "me"}', "log.t\n5\n6"),
+        ('{"t": [0, 1], "u": [[5], [6]]}', "t\tu.0\n0\t5\n1\t6"),
     ],
 )
 def test_json_is_a_column_for_every_key(text: str, table: str) -> None:
