@@ -84,7 +84,7 @@ def _power(records: list[Run], rig: Rig, response: Response) -> Iterator[str]:
     yield f"{response.channel}: {p.train.sum()} rows to fit through {through}, {p.blocks} independent blocks"
     span = float(np.ptp(view.x[view.rows][p.train]))
     if response.is_force and not view.both:
-        yield "  it moves one way: Coulomb friction and an offset cannot be told apart"
+        yield "  it moves one way, which does not separate Coulomb friction from an offset"
     turns = [f"{span / g.period:.4g} of {g.name}" for g in rig.stages if g.period]
     if turns:
         yield f"  turns: {', '.join(turns)}"

@@ -58,7 +58,7 @@ def test_a_log_shows_what_is_plain_in_its_rest(monkeypatch: pytest.MonkeyPatch) 
     assert smooth[3] == named + "a line of 2.81 N or more, 99 % of its square"
     assert power(monkeypatch, 1.0)[3] == named + "nothing, as the log is too short"
     assert power(monkeypatch, rig=replace(BENCH, stages=STAGES[1:]))[1] == rest
-    one_way = "  it moves one way: Coulomb friction and an offset cannot be told apart"
+    one_way = "  it moves one way, which does not separate Coulomb friction from an offset"
     assert power(monkeypatch, both=False)[1] == one_way
     assert power(monkeypatch, rig=replace(BENCH, estimate=()))[2] == "  its terms: scale, offset"
 
