@@ -123,7 +123,8 @@ def test_time_starts_when_all_is_open_and_the_axes_are_parked_after_it(desk: Des
     assert desk.made == ("scenario", "model", 1.0, None, None) and desk.looped[0] is desk.served
     assert desk.looped[4:] == (2.0, None) and desk.served.steps is None
     assert desk.said == [
-        "serving 2 boards at 1 times real time; Ctrl-C ends it", "  --lx200 4030  LX200 over TCP, 127.0.0.1:4030",
+        "serving 2 boards at 1 times real time; Ctrl-C ends it",
+        "  --lx200 4030  LX200 over TCP, 127.0.0.1:4030",
         "ticks first", "it was long", "  --lx200 4030: 1 clients", "parked",
     ]  # fmt: skip
 
