@@ -108,3 +108,14 @@ def test_a_scenario_may_be_put_on_another_network(file: Path) -> None:
     scenario, _ = chosen(file, seed=9)
     assert scenario.seed == 9 and scenario.file == file
     assert chosen(file, network_name="lab")[0].network["name"] == "lab"
+
+
+def test_targets_and_boards_are_looked_at_before_the_plant(
+    file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[str] = []
+    for name in ("check_targets", "check_boards"):
+        told = f"{name} {{}}".format
+        monkeypatch.setattr(prepared, name, lambda scenario, told=told: asked.append(told(scenario.seed)))
+    prepare(file, Changes(seed=6))
+    assert asked == ["check_targets 6", "check_boards 6"]

@@ -38,7 +38,7 @@ class StandIn:
 
 def made(folder: Path, can_log: str = "text", plant: Any = None) -> Any:
     scenario = SimpleNamespace(
-        clock=chosen()[0].clock, seed=3, can_log=can_log, trace_period_s=0.25
+        clock=chosen()[0].clock, seed=3, can_log=can_log, trace_period_s=2.0
     )  # fmt: skip
     given: Any = scenario
     stand_in: Any = StandIn()
@@ -48,7 +48,7 @@ def made(folder: Path, can_log: str = "text", plant: Any = None) -> Any:
 def test_files_are_there_at_once_and_truth_is_asked_for(tmp_path: Path) -> None:
     plant = StandIn()
     found = made(tmp_path, plant=plant)
-    assert plant.recorded == [(found.take_truth, 250_000_000)]
+    assert plant.recorded == [(found.take_truth, 2_000_000_000)]
     assert found.close() == [] and plant.recorded[1:] == [(None, None)]
     names = {file.name for file in tmp_path.iterdir()}
     assert {"can.log", "axis-ra.csv", "axis-dec.csv", "status.log", "commands.log", "sensors.log"} <= names
@@ -96,8 +96,12 @@ def test_the_digest_is_of_bus_axis_logs_and_truth(tmp_path: Path) -> None:
     found.can.take(0, Frame(0x11, b"\x11"))
     wide = np.arange(48.0).reshape(2, 24)
     columns = len(TRUTH_COLUMNS)
+    kept: list[int] = []
+    found.truth = {axis: SimpleNamespace(append=lambda rows: kept.append(len(rows)), close=lambda: None)
+                   for axis in ("ra", "dec")}  # fmt: skip
     for axis, rows in (("ra", wide[:, :columns]), ("dec", wide[:1, :columns])):
         found.take_truth(axis, rows)
+    assert kept == [2, 1]
     found.close()
     parts = [hashlib.sha256((tmp_path / name).read_bytes()).hexdigest()
              for name in ("can.log", "axis-ra.csv", "axis-dec.csv")]  # fmt: skip
