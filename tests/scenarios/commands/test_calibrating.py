@@ -69,10 +69,10 @@ def logs(folder: Path) -> list[Path]:
 def test_logs_and_options_go_to_the_finder(desk: Desk, tmp_path: Path) -> None:
     """Each stage takes a time of its own, and more for a megabyte; docs/example's are in the module."""
     files = logs(tmp_path)
-    done = desk(calibrating.calibrate, *files, "--rig", "r.yaml", "--hold-out", "b", "--plant", "p.yaml",
+    done = desk(calibrating.calibrate, *files, "--rig", "r.yaml", "--hold-out", "night", "--plant", "p.yaml",
                 "--out", "there")  # fmt: skip
     assert done.exit_code == 7 and desk.needed == ["calibrate"]
-    assert desk.given == [files, Path("r.yaml"), ["b"], Path("there"), Path("p.yaml")]
+    assert desk.given == [files, Path("r.yaml"), ["night"], Path("there"), Path("p.yaml")]
     assert desk.entered == ["searching", "searching", "replaying", "writing the report"]
     expected = {name: begin + 1.5 * more for name, (begin, more) in calibrating.USUAL.items()}
     assert desk.usual == pytest.approx(expected)
@@ -108,3 +108,9 @@ def test_a_rig_file_is_drafted_from_one_log(desk: Desk, tmp_path: Path) -> None:
     for words in (more, ["--plot", "p.png"], ["--rig", "r.yaml"]):
         done = desk(calibrating.rig, first, *words, "--new")
         assert done.exit_code == 2 and "--new drafts from one log, and draws nothing" in done.output
+
+
+@pytest.mark.parametrize(("words", "missing"), [((), "LOGS"), (("a.csv",), "--out")])
+def test_logs_and_a_folder_have_to_be_given(words: tuple[str, ...], missing: str, desk: Desk) -> None:
+    done = desk(calibrating.calibrate, *words)
+    assert done.exit_code == 2 and "Missing " in done.output and missing in done.output

@@ -107,3 +107,12 @@ def test_a_run_is_exported(needed: list[str], monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setitem(sys.modules, "scenarios.run.mcapfile", made)
     done = call(describing.export, "run", "--mcap", "out.mcap")
     assert done.output == "out.mcap: run out.mcap 12 messages\n" and needed == ["recordings", "parquet"]
+
+
+@pytest.mark.parametrize(("command", "words", "missing"), [
+    (describing.fmu, ("--axis", "ra"), "--out"), (describing.fmu, ("--out", "x"), "--axis"),
+    (describing.export, ("run",), "--mcap"), (describing.eds, (), "FOLDER"),
+])  # fmt: skip
+def test_what_is_written_needs_a_place(command: Any, words: tuple[str, ...], missing: str) -> None:
+    done = call(command, *words)
+    assert done.exit_code == 2 and "Missing " in done.output and missing in done.output

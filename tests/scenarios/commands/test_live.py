@@ -114,3 +114,8 @@ def test_control_tells_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
     instead(monkeypatch, "stepped", tell=lambda line, at, token: f"{line}|{at}|{token}")
     assert call(live.control, "speed", 2).output == "speed 2|127.0.0.1:7411|None\n"
     assert call(live.control, "pause", "--at", "7412", "--token", "w").output == "pause|7412|w\n"
+
+
+def test_control_has_to_be_told_something() -> None:
+    done = call(live.control)
+    assert done.exit_code == 2 and "Missing argument 'COMMAND...'" in done.output

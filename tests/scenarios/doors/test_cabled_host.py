@@ -13,8 +13,8 @@ from scenarios.doors import cabled_host
 from scenarios.doors.cabled_host import CabledHost
 from scenarios.doors.options import HostOptions
 
-START_S = 1024.0
-"""On the PC's clock, which no number of seconds is near to."""
+START_S = 1024.013
+"""On the PC's clock, no whole number of periods."""
 
 
 class Task:
