@@ -47,8 +47,9 @@ def test_tolerances_have_bounds(words: tuple[str, ...]) -> None:
     assert done.exit_code == 2 and "is not in the range" in done.output
 
 
-def test_a_data_sheet_is_written_per_type_of_board(tmp_path: Path) -> None:
-    """CiA 306: a section FileInfo with the file's name, and the objects; the first axis board is 0x11."""
+def test_a_data_sheet_is_written_per_type_of_board(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """CiA 306: a section FileInfo with the file's name, and the objects."""
+    monkeypatch.setattr("boards.canopen.canopen_dbc", lambda devices: f"dbc of {len(devices)}")
     done = call(describing.eds, tmp_path, "--network", "serial")
     assert done.exit_code == 0
     files = [Path(line) for line in done.output.splitlines()]
@@ -58,7 +59,7 @@ def test_a_data_sheet_is_written_per_type_of_board(tmp_path: Path) -> None:
     assert sorted(tmp_path.iterdir()) == sorted(files)
     text = (tmp_path / "axis.eds").read_text()
     assert "FileName=axis.eds" in text and "[1000]" in text and "CreationDate=01-01-2026" in text
-    assert "BO_ " in files[-1].read_text()
+    assert files[-1].read_text() == "dbc of 5"
 
 
 def test_the_protocol_is_printed(monkeypatch: pytest.MonkeyPatch) -> None:
