@@ -103,6 +103,10 @@ def test_a_second_later_it_is_tried_again(desk: Desk) -> None:
     assert desk.said[1:] == ["--x: still closed: taken"]  # it was open in between
 
 
+def test_one_that_was_never_open_is_tried_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert Desk(monkeypatch).poll(0.0) == [("open",)]
+
+
 def test_closing_is_told_where_it_fails(desk: Desk) -> None:
     desk.keeper.close()
     assert desk.said == [] and not desk.keeper.is_open

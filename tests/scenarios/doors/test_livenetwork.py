@@ -90,7 +90,7 @@ def test_a_frame_is_written_as_candump_does() -> None:
     assert frame_text(frame) == "211#11010000" and frame_of("211#11010000") == frame
 
 
-@pytest.mark.parametrize("text", ["", "211", "211#1", "8FF#00"])
+@pytest.mark.parametrize("text", ["", "211", "211#1", "8FF#00", "20000123#00"])
 def test_what_is_no_frame_of_this_bus_is_refused(text: str) -> None:
     with pytest.raises(ValueError, match=r"\w"):
         frame_of(text)
