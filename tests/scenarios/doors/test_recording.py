@@ -120,7 +120,9 @@ def test_entries_are_lines_in_hexadecimal(desk: Desk) -> None:
     kept.write(5, "can0", b"\x01\xff")
     kept.flush()
     assert (desk.folder / "entered.log").read_text() == "5 can0 01ff\n" and not desk.told
+    kept.write(6, "usb", b"")
     assert kept.close(9) == "" and not (desk.folder / "session.json").exists()
+    assert (desk.folder / "entered.log").read_text() == "5 can0 01ff\n6 usb \n"
 
 
 def test_its_end_has_the_digests(desk: Desk) -> None:

@@ -2,11 +2,15 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
+from io import BytesIO, StringIO
 from pathlib import Path
 from typing import Any
 
 import pytest
+from rich.console import Console
+from rich.text import Text
 
+from bus.can import Frame
 from scenarios.doors import serving
 from scenarios.doors.host_door import HostProcess
 from scenarios.doors.options import ServeOptions
@@ -28,7 +32,7 @@ class Desk:
         self.served = stub_served()
         self.served.lines = stub(uarts={"AXIS_RA": 0, "FOCUS": 0})
         self.served.punctual.text = lambda: "ticks on time"
-        self.console = stub(print=lambda text, **_: self.said.append(text), is_terminal=True)
+        self.console = stub(print=self.print, is_terminal=True)
         for part in PARTS:
             monkeypatch.setattr(serving, part, getattr(self, part.lower(), self.hear(part)))
         monkeypatch.setattr(serving, "Console", lambda: self.console)
@@ -43,6 +47,13 @@ class Desk:
             return answer
 
         return call
+
+    def print(self, text: str, **how: Any) -> None:
+        """On a narrow terminal. Colours are kept of lines that shall have none."""
+        file = StringIO()
+        Console(file=file, width=30, force_terminal=True, color_system="standard").print(text, **how)
+        told = file.getvalue().removesuffix("\n")
+        self.said.append(told if "highlight" in how else Text.from_ansi(told).plain)
 
     def chosen(self, *given: Any) -> tuple[str, str]:
         self.told.append(("chosen", *given))
@@ -138,13 +149,13 @@ def test_a_door_that_cannot_open_ends_it_parked(desk: Desk) -> None:
 
 def test_a_session_is_recorded_from_its_doors_on(desk: Desk) -> None:
     desk.served.now_ns = 12
-    serving.serve(ServeOptions(record=Path("f"), begun=Path("b"), snapshots=Path("d")))
+    serving.serve(ServeOptions(record=Path("f[b]"), begun=Path("b"), snapshots=Path("d")))
     told = [each for each in desk.told if each in ("doors", "attached", "warm", "Snapshots")]
     assert told == ["Snapshots", "doors", "attached", "warm"]
-    assert ("recorded", Path("f"), Path("b")) in desk.told
+    assert ("recorded", Path("f[b]"), Path("b")) in desk.told
     assert desk.made[:2] == ("stood", "stood") and desk.made[4].found == "read b"
     assert not any(each[0] == "chosen" for each in desk.told)
-    assert desk.said[-1] == f"recorded in f, digest {'0' * 16}; schmidt replay f repeats it"
+    assert desk.said[-1] == f"recorded in f[b], digest {'0' * 16}; schmidt replay f[b] repeats it"
 
 
 @pytest.mark.parametrize("more", [{}, {"record": Path("f")}, {"snapshots": Path("f")}])
@@ -200,29 +211,36 @@ def test_another_network_is_run_for_a_moment(monkeypatch: pytest.MonkeyPatch) ->
     """So that all is compiled: twenty milliseconds, four ticks of the boards."""
     ran: list[int] = []
     taps: list[Any] = []
-    network = stub(wire=stub(tap=taps.append), run_until=ran.append)
+    file = BytesIO()
+
+    def run_until(t_ns: int) -> None:
+        ran.append(t_ns)
+        taps[0](t_ns, Frame(0x11, b"\x11"))
+
+    network = stub(wire=stub(tap=taps.append), run_until=run_until)
     monkeypatch.setattr(serving, "wire", lambda scenario, model: network)
+    monkeypatch.setattr(serving, "BytesIO", lambda: file)
     nothing: Any = None
     serving._warm_up(nothing, nothing)
-    assert ran == [20_000_000] and len(taps) == 1
+    assert ran == [20_000_000] and file.getvalue().endswith(b"011#11\n")
 
 
 def test_doors_of_the_host_are_told_with_their_names_in_a_column(desk: Desk) -> None:
     """The host itself is no option. A token that a name ends with is not told again."""
     host: Any = HostProcess.__new__(HostProcess)
-    host.doors = [("the host", "ready"), ("--console 8080 (open it with ?token=x)", "2 pages shown"),
-                  ("--alpaca 11111", "")]  # fmt: skip
+    host.doors = [("the host", "ready"), ("--console 8080 (open it with ?token=x)", "2 [b]pages shown"),
+                  ("--alpaca 11111[b]", "")]  # fmt: skip
     doors = [stub(name="--lx200 4030", state=lambda: ""), host]
     serving._say_hello(desk.console, desk.served, doors)
     width = len("--console 8080 (open it with ?token=x)")
     names = [line[2 : 2 + width].rstrip() for line in desk.said[1:]]
-    assert names == ["--lx200 4030", "--console 8080 (open it with ?token=x)", "--alpaca 11111"]
+    assert names == ["--lx200 4030", "--console 8080 (open it with ?token=x)", "--alpaca 11111[b]"]
     assert all(line[2 + width : 4 + width] == "  " for line in desk.said[1:])
     desk.said.clear()
     desk.served.punctual.ticks = 3
     loop: Any = stub(text=lambda: "it was long")
     serving._say_goodbye(desk.console, loop, desk.served, doors)
     assert desk.said == [
-        "it was long", "  the host: ready", "  --console 8080: 2 pages shown",
-        "  nobody came to --lx200 4030, --alpaca 11111", "ticks on time",
+        "it was long", "  the host: ready", "  --console 8080: 2 [b]pages shown",
+        "  nobody came to --lx200 4030, --alpaca 11111[b]", "ticks on time",
     ]  # fmt: skip
