@@ -51,7 +51,7 @@ class Desk:
     def print(self, text: str, **how: Any) -> None:
         """On a narrow terminal. Colours are kept of lines that shall have none."""
         file = StringIO()
-        Console(file=file, width=30, force_terminal=True, color_system="standard").print(text, **how)
+        Console(file=file, width=10, force_terminal=True, color_system="standard").print(text, **how)
         told = file.getvalue().removesuffix("\n")
         self.said.append(told if "highlight" in how else Text.from_ansi(told).plain)
 
@@ -97,7 +97,7 @@ class Desk:
 
     def park(self, _served: Any, say: Any) -> str:
         self.told.append("park")
-        return "parked"
+        return "parked, motors off"
 
     @contextmanager
     def first(self, asked: bool) -> Iterator[str]:
@@ -136,7 +136,7 @@ def test_time_starts_when_all_is_open_and_the_axes_are_parked_after_it(desk: Des
     assert desk.said == [
         "serving 2 boards at 1 times real time; Ctrl-C ends it",
         "  --lx200 4030  LX200 over TCP, 127.0.0.1:4030",
-        "ticks first", "it was long", "  --lx200 4030: 1 clients", "parked",
+        "ticks first", "it was long", "  --lx200 4030: 1 clients", "parked, motors off",
     ]  # fmt: skip
 
 
