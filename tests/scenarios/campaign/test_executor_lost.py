@@ -108,6 +108,7 @@ def test_what_was_running_beside_it_has_lost_a_worker_too(monkeypatch: pytest.Mo
     assert [done.error for done in bench.each("ab")] == [
         f"the worker died 5 times: BrokenExecutor: {key}" for key in "ab"
     ]
+    assert len(bench.pools) == 5
 
 
 def test_a_pool_that_takes_nothing_is_left_and_its_tasks_are_made_again(
