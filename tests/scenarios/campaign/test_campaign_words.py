@@ -52,7 +52,7 @@ class Desk:
         monkeypatch.setattr(run_campaign, "shown", self.shown)
         monkeypatch.setattr(run_campaign, "each", self.each)
         monkeypatch.setattr(run_campaign, "write", lambda *given: self.written.append(given))
-        monkeypatch.setattr(table, "write", lambda folder: folder / table.TABLE)
+        monkeypatch.setattr(table, "write", self.written.append)
         clock = SimpleNamespace(perf_counter=lambda: 50.0 + self.clock)
         monkeypatch.setattr(run_campaign, "time", clock)
 
@@ -94,7 +94,7 @@ def test_all_runs_are_journalled_and_reported(desk: Desk, capsys: pytest.Capture
     assert [row["key"] for row in table.rows(desk.out / table.JOURNAL)] == ["a", "b", "c"]
     assert desk.total == ("runs", 3, 0) and desk.asked == [(key, None) for key in "abc"]
     assert desk.shown_at == [(1, "1 of 3"), (2, "2 of 3"), (3, "3 of 3")]
-    assert desk.written == [(desk.plan, desk.out, 30.0, 3)]
+    assert desk.written == [desk.out, (desk.plan, desk.out, 30.0, 3)]  # the report is of the table
 
 
 def test_logs_are_kept_in_a_folder_of_the_campaign(desk: Desk) -> None:
