@@ -79,6 +79,12 @@ def test_an_effect_is_described(name: str) -> None:
     assert len([line for line in rest if line.startswith("  ")]) == len(effect.parameters)
 
 
+def test_effects_are_listed_by_name_channel_and_domain() -> None:
+    lines = call(describing.effects).output.splitlines()
+    assert [line.split()[:2] for line in lines] == [[each.name, each.channel] for each in REGISTRY.values()]
+    assert all(line.endswith(each.equation) for line, each in zip(lines, REGISTRY.values(), strict=True))
+
+
 @pytest.fixture
 def needed(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     found: list[str] = []
