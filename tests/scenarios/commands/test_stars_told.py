@@ -31,6 +31,7 @@ def answer(*lacks: Lack, **more: Any) -> Answer:
 @pytest.fixture
 def told(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> Any:
     """Lines of the command for an answer."""
+    monkeypatch.setenv("COLUMNS", "40")  # a pipe has no width
     monkeypatch.setattr(stars, "read", lambda path: f"stars of {path}")
     monkeypatch.setattr(stars, "residuals", lambda found, model: Figure())
 
@@ -101,7 +102,7 @@ def test_nothing_missing_is_told(told: Any) -> None:
 
 def test_what_cannot_be_seen_is_told_in_one_line(told: Any, tmp_path: Path) -> None:
     """However many there are, and with the names as they are."""
-    names = [f"[b]T{k:02}" for k in range(20)]
+    names = [f"[b]:star:T{k:02}" for k in range(20)]
     lines = told(answer(unseen_arcsec=dict.fromkeys(names, 3.14), confounded=tuple(names)))
     assert lines[-3] == f"Not seen, and smaller than: {', '.join(f'{name} 3.1″' for name in names)}"
     assert lines[-2] == f"These stars cannot tell from the others: {', '.join(names)}"
