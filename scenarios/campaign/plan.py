@@ -165,7 +165,5 @@ def sample(way: str, runs: int, width: int, seed: int) -> npt.NDArray[np.float64
 
     if way == "latin hypercube":
         return np.asarray(qmc.LatinHypercube(width, rng=random).random(runs))
-    drawn: npt.NDArray[np.float64] = qmc.Sobol(width, rng=random).random_base2(
-        max(0, (runs - 1).bit_length())
-    )
+    drawn: npt.NDArray[np.float64] = qmc.Sobol(width, rng=random).random_base2((runs - 1).bit_length())
     return drawn[:runs]

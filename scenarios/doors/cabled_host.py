@@ -51,6 +51,7 @@ class CabledHost(Host):
 
     def run(self, duration_s: float | None = None) -> None:
         """Until Ctrl-C, or for a time."""
+        period_s = TICK_NS * 1e-9
         try:
             self.open()
             for task in self.tasks:
@@ -59,7 +60,7 @@ class CabledHost(Host):
             self._console.print(f"host on {self.usb.name} with {doors}; Ctrl-C ends it")
             while duration_s is None or monotonic() - self._start_s < duration_s:
                 self.tick()
-                sleep(max(0.0, TICK_NS * 1e-9 - (monotonic() - self._start_s) % (TICK_NS * 1e-9)))
+                sleep(period_s - (monotonic() - self._start_s) % period_s)
         except KeyboardInterrupt:
             pass
         finally:

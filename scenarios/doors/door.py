@@ -91,7 +91,6 @@ class Keeper:
         self._report(f"{self.door.name}: open again")
 
     def _broken(self, reason: str) -> None:
-        self.is_open = False
         self._reason = reason
         self._next_s = monotonic() + RETRY_S
         self._report(f"{self.door.name}: broken: {reason}; the others go on, it is tried again every second")

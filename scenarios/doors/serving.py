@@ -88,7 +88,8 @@ def serve(options: ServeOptions) -> int:
     _say_goodbye(console, loop, served, doors)
     console.print(ended, soft_wrap=True)
     if recording is not None:
-        console.print(f"recorded in {folder}, digest {digest[:16]}; schmidt replay {folder} repeats it")
+        told = f"recorded in {folder}, digest {digest[:16]}; schmidt replay {folder} repeats it"
+        console.print(told, markup=False, soft_wrap=True)
     return 0
 
 
@@ -110,7 +111,7 @@ def _warm_up(scenario: Scenario, model: PlantModel) -> None:
 def _say_hello(console: Console, served: LiveNetwork, doors: Sequence[Door]) -> None:
     count, boards, speed = len(served.network.boards), list(served.lines.uarts), served.pacer.speed
     pace = f"at {speed:g} times real time" if served.steps is None else "as clients step them"
-    console.print(f"serving {count} boards {pace}; Ctrl-C ends it")
+    console.print(f"serving {count} boards {pace}; Ctrl-C ends it", soft_wrap=True)
     names = [name for name, _ in _states(doors) if name.startswith("--")]
     for name in names:
         text = f"  {name:{max(map(len, names))}}  {attached(name, boards).words}"

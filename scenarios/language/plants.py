@@ -86,8 +86,7 @@ def _effect(given: dict[str, Any]) -> EffectModel:
 
     spec = REGISTRY.get(given["name"])
     units = {} if spec is None else {each.name: each.unit for each in spec.parameters}
-    places = ("stage", "harmonic") if spec is not None and spec.staged else ()
-    block = {word: given[word] for word in ("name", *places) if word in given}
+    block: dict[str, Any] = {word: given[word] for word in ("name", "stage", "harmonic") if word in given}
     for word, value in given.get("parameters", {}).items():
         number = value if isinstance(value, dict) else {"value": value}
         whole = {"unit": units.get(word, "1"), "source": "scenario", **number}

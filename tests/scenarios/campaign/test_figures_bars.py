@@ -103,3 +103,26 @@ def test_figures_grow_with_their_rows() -> None:
     many: Any = influences([moved("a", f"m{k}", 0.5) for k in range(9)], ["input: a"])
     assert few is not None and many is not None
     assert 0.5 < few.get_figheight() < many.get_figheight() < 10.0
+
+
+@pytest.mark.parametrize("count", [1, 3])
+def test_a_group_is_in_the_legend_once(count: int) -> None:
+    """Whatever number of expectations it misses; both figures are one plot."""
+    missed = "; ".join(f"e{k}" for k in range(count))
+    figure: Any = failures({"missed": [missed, missed]}, {"one": [0], "two": [1]})
+    assert figure is not None
+    assert [each.get_text() for each in figure.legends[0].get_texts()] == ["one", "two"]
+    other: Any = influences([moved("a", "m", 0.5)], ["input: a"])
+    assert other is not None
+    for each in (figure, other):
+        assert each.axes[0].get_subplotspec().get_geometry() == (1, 1, 0, 0)
+
+
+def test_bars_have_room_whatever_their_number() -> None:
+    """A fifth of an inch each, and an inch for title and axis."""
+    missed = {"missed": ["; ".join(f"e{k}" for k in range(12))] * 2}
+    one: Any = failures(missed, {"all": [0, 1]})
+    two: Any = failures(missed, {"one": [0], "two": [1]})
+    assert one is not None and two is not None
+    assert 12 * 0.2 + 1.0 <= one.get_figheight() < two.get_figheight() < 10.0
+    assert two.get_figheight() >= 24 * 0.2 + 1.0

@@ -93,3 +93,8 @@ class StubServed:
 def stub_served() -> Any:
     """A new one."""
     return StubServed()
+
+
+def stub(**names: Any) -> Any:
+    """Anything that has these names."""
+    return SimpleNamespace(**names)

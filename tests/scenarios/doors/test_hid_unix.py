@@ -12,7 +12,7 @@ import pytest
 
 from scenarios.doors.hid_unix import UnixDoor
 from tests.scenarios.doors.served import StubClient
-from tests.scenarios.doors.test_uhid import Plug
+from tests.scenarios.doors.test_hid_uhid import Plug
 
 REPORT = bytes(range(64))
 

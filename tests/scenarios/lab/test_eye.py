@@ -95,3 +95,18 @@ def test_what_was_known_is_said_first_and_every_offset_is_told(monkeypatch: pyte
     assert [alone(star, 0) for _ in range(3)][2] == third  # the noise goes on meanwhile
     assert Eye(plant(), scenario(2))(star, 0) != alone(star, 0)
     assert pytest.approx(math.pi) == STEP * (1 << 28)
+
+
+def test_zeros_of_both_axes_and_the_time_of_the_sky_are_in_seconds(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[float] = []
+
+    def observe(star: Any, site: Any, clock: str, t_s: float) -> Any:
+        asked.append(t_s)
+        return SimpleNamespace(hour_angle_rad=0.3, declination_rad=0.0)
+
+    monkeypatch.setattr(eye, "observe", observe)
+    moved, star = scenario(), SimpleNamespace()
+    moved.mount.dec.zero_steps = round(0.1 / STEP)
+    one: Any = star
+    Eye(plant(), moved)(one, 2_500_000_000)
+    assert asked == [2.5] and look(plant(), moved, 7).declination_rad == pytest.approx(0.0, abs=STEP)

@@ -8,7 +8,9 @@ import pytest
 
 from bus.can import Frame
 from bus.protocol import COMMAND_BASE
+from bus.time import EventQueue
 from scenarios.lab import session
+from scenarios.lab.networks import SERIAL
 from scenarios.lab.session import Cables, Session, log_headers, plugged
 
 
@@ -178,3 +180,74 @@ def test_a_network_without_a_gateway_is_heard_by_its_debug_ports() -> None:
     hid = SimpleNamespace(write=lambda *_: None, to_host=None)
     network = SimpleNamespace(boards={"GATEWAY": None}, hid=hid)
     assert plugged(network).receive == hid.to_host
+
+
+@pytest.mark.parametrize("chained", [False, True])
+def test_a_session_is_host_and_network_on_one_queue(chained: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The safety chain is heard where there is one; status is logged from the beginning on."""
+    heard: list[Any] = []
+    queue = EventQueue()
+    uarts = {device.name: SimpleNamespace(sink=None) for device in SERIAL}
+    chain = SimpleNamespace(told=None) if chained else None
+    network = SimpleNamespace(
+        plant="plant", wire=SimpleNamespace(tap=heard.append), uarts=uarts, chain=chain, queue=queue,
+        devices=(),
+    )  # fmt: skip
+
+    class Recorded:
+        """Files that are not there."""
+
+        can, ascii = SimpleNamespace(take="taken"), "ascii"
+
+        def __init__(self, *_: Any) -> None: ...
+
+        def link(self, device: Any) -> Any:
+            return SimpleNamespace(device=device, receive=f"to {device.name}")
+
+    parts = {
+        "powered": network, "plugged": "link", "Client": SimpleNamespace(), "Eye": "eye",
+        "Programme": SimpleNamespace(), "log_headers": {},
+    }  # fmt: skip
+    for name, part in parts.items():
+        monkeypatch.setattr(session, name, lambda *_, part=part: part)
+    monkeypatch.setattr(session, "Recorder", Recorded)
+    faults = SimpleNamespace(schedule=heard.append)
+    monkeypatch.setattr(session, "Faults", lambda network, seed: faults)
+    scenario: Any = SimpleNamespace(seed=3, faults="faults", status_period_s=2.0)
+    nothing: Any = None
+    made: Any = Session(scenario, nothing, nothing)
+    assert heard == ["taken", "faults"] and (made._status_ns, made._next_status_ns) == (2_000_000_000, 0)
+    assert all(uart.sink == f"to {name}" for name, uart in uarts.items())
+    assert chain is None or chain.told == made.chain_says
+    ticks: list[int] = []
+    assert made.ticked is None and made.rows == [] and queue.now_ns == 0
+    made.work = ticks.append
+    made.advance(99_000_000)
+    assert ticks == [50_000_000]
+
+
+def test_a_tick_leaves_a_row_which_an_advance_hands_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(session, "readings", lambda client, mount: "read")
+    desk = Desk()
+    desk.session.work(1_000_000_000)
+    assert len(desk.session._rows) == 1
+    desk.session.network = SimpleNamespace(queue=EventQueue())
+    desk.session.advance(5)
+    assert [name for name, _ in desk.traces] == ["host", "focus"] and not desk.session._rows
+
+
+def test_the_chain_is_told_in_the_error_log() -> None:
+    desk, told = Desk(), list[Any]()
+    desk.session.recorder.ascii.error = lambda *line: told.append(line)
+    desk.session.chain_says(7, "button pressed")
+    assert told == [(7, "CHAIN", "button pressed")]
+
+
+def test_a_session_goes_on_with_another_network() -> None:
+    desk, adopted = Desk(), list[Any]()
+    desk.session.recorder.adopt = adopted.append
+    desk.session.eye, desk.session.link = SimpleNamespace(), SimpleNamespace()
+    other: Any = SimpleNamespace(plant="other", hid=SimpleNamespace(write="write"))
+    desk.session.adopt(other)
+    assert adopted == ["other"] and desk.session.plant == desk.session.eye.plant == "other"
+    assert desk.session.network is other and desk.session.link._send == "write"

@@ -100,6 +100,7 @@ LIMITS = {"error": (10.0, True), "rate": (4.0, False), "lost": (0.0, True)}
     ({"metric__rate": [4.0, 5.0, 3.0]}, 2),
     ({"metric__error": [11.0, 0, 0], "metric__rate": [4.0, 2.0, 4.0]}, 1),
     ({"metric__lost": [0, 5, 0], "metric__error": [0, 0, 1.0]}, 2),
+    ({"metric__error": [15.0, 0, 0], "metric__rate": [4.0, 3.2, 4.0]}, 0),
     ({"index": [-1, 1, 2], "missed": ["a; b", "", "a"]}, 2), ({"index": [0, -1, -1]}, 0), ({}, 0),
 ])  # fmt: skip
 def test_the_worst_run(columns: dict[str, list[Any]], worst: int) -> None:
@@ -108,6 +109,7 @@ def test_the_worst_run(columns: dict[str, list[Any]], worst: int) -> None:
     assert found is not None
     assert (found["key"], found["inputs"]) == (f"k{worst}", {"a": 5 + worst})
     assert found["digest"] == "" and found["missed"] == (columns.get("missed") or [""] * 3)[worst]
+    assert found["failure"] == (columns.get("failure") or [""] * 3)[worst]
 
 
 def test_no_planned_run_is_the_worst() -> None:
@@ -124,12 +126,13 @@ def test_the_worst_run_finds_its_plant_from_anywhere(tmp_path: Path, block: bool
     if there:
         beside.touch()
     given: Any = {"file": "mine.yaml", "effects": []} if block else "mine.yaml"
-    case = SimpleNamespace(document={"name": "ü", "plant": given}, key="abc")
+    case = SimpleNamespace(document={"name": "ü", "plant": given, "expect": []}, key="abc")
     one = plan(case=lambda index: case)
     one.scenario = tmp_path / "x.yaml"
     report_page._write_worst(one, 3, tmp_path / "worst.yaml")
     text = (tmp_path / "worst.yaml").read_text(encoding="utf-8")
     assert text.startswith("# run 3 of the campaign many, abc\nname: ü\nplant:")
+    assert list(yaml.safe_load(text)) == ["name", "plant", "expect"]
     file = str(beside) if there else "mine.yaml"
     assert yaml.safe_load(text)["plant"] == ({"file": file, "effects": []} if block else file)
 
@@ -156,3 +159,20 @@ def test_the_page_holds_what_was_summed_up(tmp_path: Path, monkeypatch: pytest.M
     assert seen["pictures"] == [("drawn", "distributions.png")] and seen["failures"] == [("broken", 2)]
     assert [each["name"] for each in seen["metrics"]] == ["error"]
     assert seen["repeat"] == f"schmidt run {tmp_path / 'worst.yaml'}"
+
+
+def test_the_worst_run_is_written_and_twenty_failures_are_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    columns = table(30, passed=[False] * 30)
+    columns["failure"] = [f"f{k}" for k in range(25)] + ["f24"] * 5
+    told: dict[str, Any] = {}
+    written: list[Any] = []
+    monkeypatch.setattr("scenarios.campaign.table.read", lambda path: columns)
+    for name in ("distributions", "influences", "failures"):
+        monkeypatch.setattr(f"scenarios.campaign.figures.{name}", lambda *_: None)
+    monkeypatch.setattr(report_page, "_write_worst", lambda *given: written.append(given[1:]))
+    monkeypatch.setattr(report_page, "rendered", lambda template, **given: told.update(given) or "page")
+    report_page.write(plan(), tmp_path, 5.0, 2)
+    assert written == [(0, tmp_path / "worst.yaml")] and told["pictures"] == []
+    assert len(told["failures"]) == 20 and told["failures"][0] == ("f24", 6)
