@@ -1,5 +1,6 @@
 """A coupling's gap in the position, row by row: the driven side, what carries the axis over, the shift."""
 
+from pathlib import Path
 from types import SimpleNamespace as Some
 from typing import Any
 
@@ -97,7 +98,10 @@ def test_a_gap_is_half_its_size_on_either_driven_side(monkeypatch: pytest.Monkey
     monkeypatch.setattr(applied, "axis_by_motors", lambda _: np.zeros(9))
     clock = np.where(np.isfinite(reading), np.arange(9.0), np.nan)
     rows = [reading[:5], reading[[5, 6, 8]]]
-    runs = [Run(f"{k}", None, "", {"t": 1.0 * np.arange(len(x)), "position": x}) for k, x in enumerate(rows)]  # type: ignore[arg-type]
+    runs = [
+        Run(f"{k}", Path("one"), "", {"t": np.linspace(0, 1, len(x)), "position": x})
+        for k, x in enumerate(rows)
+    ]
     frame = Some(columns={"position": reading}, run=run, clock=clock, runs=runs)
     fault = Finding("play", "K", "reversal", parameters={"gap": Parameter(4.0 / ARCSEC, "arcsec")})
     one, two = applied.corrected_runs(result(frame=frame), fault)
