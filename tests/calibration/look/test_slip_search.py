@@ -176,7 +176,7 @@ def test_a_slip_is_looked_for_within_two_fitted_rows_of_its_place() -> None:
     assert list(look._placed(s, [50], v)) == [519]
     assert list(look._placed(s, [55], v)) == [529]  # two fitted rows, and a row of the second round
     assert list(look._placed(s, [49], v)) == [511]
-    for at, place in ((7, 0), (ROWS - 4, rows - 1)):
+    for at, place in ((7, 0), (ROWS - 24, rows - 1)):
         p = problem(3.0 * look._step(v, at), held=np.zeros(rows, dtype=bool))
         (found,) = look._placed(Some(problem=p, columns=p.base), [place], v)
         assert abs(found - at) <= 1
