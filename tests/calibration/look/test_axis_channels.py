@@ -8,7 +8,7 @@ import pytest
 
 from calibration.decide.selection import Refusal
 from calibration.finding import Finding, Parameter
-from calibration.look import applied, axis_channels
+from calibration.look import applied, axis_channels, axis_result
 from calibration.look.looked import Options
 from calibration.names.command_disturbance import NAME as DISTURBANCE
 from plant.units import ARCSEC
@@ -295,3 +295,20 @@ def test_pick_up_is_looked_for_on_currents_that_flow(monkeypatch: pytest.MonkeyP
     assert view.quanta == {"current": 0.2} and view.response.channel == "current"
     m.frame.get = lambda name: None
     assert channels.pick_ups(m) == []
+
+
+def test_every_choice_is_collected_with_its_quotients(monkeypatch: pytest.MonkeyPatch) -> None:
+    def retold(f: Finding, quotients: Any) -> Finding:
+        return f.noted(f"times {quotients.get('k', 1.0)}")
+
+    monkeypatch.setattr(axis_result, "finding_of", lambda s, k: Finding(s.chosen[k], "T", "time"))
+    monkeypatch.setattr(axis_result, "NAMES", dict.fromkeys("ab", Some(retold=retold)))
+    result: Any = axis_result.AxisResult(*[NOTHING] * 4)
+    s: Any = Some(chosen=["a", "b"])
+    result.collect(s, {"k": 2.0})
+    result.collect(Some(chosen=["a"]))
+    assert [(f.name, f.note) for f in result.findings] == [
+        ("a", "times 2.0"), ("b", "times 2.0"), ("a", "times 1.0"),
+    ]  # fmt: skip
+    assert (result.constant_error, result.scale_error) == (0.0, 0.0)
+    assert result.rng.random() == np.random.default_rng(0).random()
