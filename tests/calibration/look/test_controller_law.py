@@ -45,7 +45,7 @@ SMALL = {"gain_p": 2.0, "gain_d": 1.0}
         (law(END, 0.1), {"gain_p": 9.0}, 1),  # held-out rows alone tell it
         (law(FEWER, 0.1, held=59), {"gain_p": 9.0}, 0),  # fewer than sixty are not asked
         (law(np.ones((ROWS, 1)) - END, 0.1), {"gain_p": 9.0}, 0),
-        (law(RANDOM[:, :1], 5.0 + 0.01 * NOISE, base=1.0), {"gain_p": 9.0}, 1),  # beside an offset
+        (law(RANDOM[:, :1], 5.0 + 0.01 * NOISE, base=1.0), {"gain_p": 2.0}, 1),  # beside an offset
         (law(RANDOM[:, :1], 0.5 * RANDOM[:, 0]), {"gain_p": 0.5}, 1),  # 1.0 t is left, of 0.5 t
         (law(RANDOM[:, :1], 0.5 * RANDOM[:, 0]), {"gain_p": 2.0}, 0),
         (law(RANDOM, 0.5 * NOISE, (2.0, 1.03)), SMALL, 0),  # no better than by luck
