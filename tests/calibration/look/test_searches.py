@@ -1,5 +1,6 @@
 """Searches over stubbed selections: lines round by round, shapes alone, gaps that are crossed, few values."""
 
+from dataclasses import replace
 from types import SimpleNamespace as Some
 from typing import Any
 
@@ -334,3 +335,51 @@ def test_a_motor_s_line_of_a_gear_s_order_is_the_gear_s(
     assert channel._of_a_gear(c, [shown]) == gear
     assert not channel._of_a_gear(c, [Finding("gear_eccentricity", "T", "axis_angle", order=of)])
     assert not channel._of_a_gear(c, [Finding("brake_drag", "K", "axis_angle", order=of)])
+
+
+@pytest.mark.parametrize("bounds", [[], ["inertia: -1"]])
+def test_a_term_that_is_out_of_bounds_is_searched_without(
+    monkeypatch: pytest.MonkeyPatch, bounds: list[str]
+) -> None:
+    searched: Any = []
+    monkeypatch.setattr(look, "_search", lambda view, p: (searched.append(p) or len(searched), "scene"))
+    monkeypatch.setattr(look, "_bound", lambda s: bounds if s == 1 else ["never"])
+    assert look.find(None, "p") == (2 if bounds else 1, "scene", bounds)
+
+
+@pytest.mark.parametrize(
+    ("value", "name", "said"),
+    [
+        (-2.1, "viscous", ""), (-2.0, "viscous", ", within its error"), (0.0, "viscous", None),
+        (-2.1, "offset", None),
+    ],
+)  # fmt: skip
+def test_a_negative_term_is_within_its_error_below_two(value: float, name: str, said: str | None) -> None:
+    p = Some(base=np.ones((3, 2)), base_labels=[("offset", ""), (name, "")])
+    s: Any = Some(problem=p, after=Some(beta=np.array([1.0, value]), errors=np.array([9.0, 1.0])))
+    told = look._bound(s)
+    if said is None:
+        assert told == [] and p.base.all()
+    else:
+        assert told == [f"{name}: the fit gives {value:.4g}{said}; a negative one feeds energy: kept at zero"]
+        assert p.base[:, 0].all() and not p.base[:, 1].any()
+    p.base = np.column_stack([np.ones(3), np.zeros(3)])
+    assert look._bound(s) == []
+
+
+def test_a_scene_has_declared_numbers_and_what_its_flexible_fit_leaves(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """What a rig knows stands beside what was fitted; lines are looked for beneath the wander."""
+    s = drive(np.arange(8.0), base=np.ones((8, 1)), y=np.resize([1.0, 3.0], 8))
+    s.view.rig = replace(s.view.rig, constants={"inertia": 4.0})
+    monkeypatch.setattr(look, "flexible", lambda scene: np.resize([1.0, -1.0], 8)[:, None])
+    scene = look.scene_of(s.view, s.problem)
+    assert scene.declared == {"term_0": pytest.approx(2.0), "inertia": 4.0}
+    assert scene.residual == pytest.approx(np.resize([-1.0, 1.0], 8)) and scene.wander.shape == (8, 1)
+    lines = [Some(columns=np.full((8, 2), 5.0)), Some(columns=np.full((8, 4), 6.0))]
+    monkeypatch.setattr(look, "free_lines", lambda scene: lines)
+    assert look.lines_over_place(scene).shape == (8, 6)
+    assert scene.residual == pytest.approx(np.zeros(8), abs=1e-9)
+    monkeypatch.setattr(look, "free_lines", lambda scene: [])
+    assert look.lines_over_place(scene).shape == (8, 0)
