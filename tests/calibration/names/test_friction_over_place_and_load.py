@@ -271,3 +271,16 @@ def test_a_slip_s_columns_are_minus_the_rate_that_is_lost() -> None:
     assert tight == pytest.approx(wide) and not np.array_equal(tight, c.columns)
     creep = slipping(99)[2]
     assert creep.columns[row, 0] == pytest.approx(-(2e-3 - 0.0005) / ARCSEC, rel=1e-3)
+
+
+def test_what_is_applied_may_switch_its_sign() -> None:
+    """Of 4 N to and fro, behind no filter: the load is what is applied, with the pull, and its friction."""
+    applied = np.where(np.arange(ROWS) // 70 % 2 == 0, 4.0, -4.0)
+    y = PULL - 1.5 * applied + 2.0 * WAY + 0.2 * np.abs(PULL - 1.5 * applied) * WAY
+    base = np.column_stack([PULL, WAY, applied])
+    s = drive(X, base=base, y=y, declared={"applied": 1.0}, columns={"applied": applied})
+    s.problem.base_labels = [("inertia", "kg"), ("coulomb", "N"), ("applied", "1")]
+    whole, carried = load_friction.columns(s)
+    assert carried.columns[:, 0] == pytest.approx(WAY * np.abs(PULL - 1.5 * applied), abs=1e-2)
+    moves = s.view.direction != 0
+    assert np.abs(whole.columns[moves, 0]) == pytest.approx(np.abs(y[moves]), abs=0.1)
