@@ -25,7 +25,7 @@ def held(after: float, before: float = 1.0) -> Any:
 
 
 def looks(monkeypatch: pytest.MonkeyPatch, *results: Any, refused: Any = None, judged: Any = None) -> Any:
-    """Looks in turn, over logs that are told; what they leave before is 2 of T and none of E."""
+    """Looks in turn, over logs that are told; what they leave before is half of T and none of E."""
     logs: Any = []
     each = iter(results)
     monkeypatch.setattr(channels, "_look", lambda runs, *_: logs.append(runs) or next(each))
@@ -36,7 +36,7 @@ def looks(monkeypatch: pytest.MonkeyPatch, *results: Any, refused: Any = None, j
     )
     monkeypatch.setattr(applied, "too_little", lambda *_: refused)
     monkeypatch.setattr(applied, "corrected_runs", lambda result, f: [f"less {f.name}"])
-    monkeypatch.setattr(applied, "before_of", lambda *_: {"T": 2.0, "E": 0.0})
+    monkeypatch.setattr(applied, "before_of", lambda *_: {"T": 0.5, "E": 0.0})
     monkeypatch.setattr(applied, "judged", lambda *_: judged)
     monkeypatch.setattr(applied, "keep_untouched", lambda was, again: logs.append("kept"))
     return logs
@@ -73,7 +73,7 @@ def test_a_fault_is_undone_and_all_is_looked_at_again(
     k = held(0.5, 3.0)
     first = result(stamp, fault, worm, selections={"K": k})
     other = Finding("brake", "T", "time")
-    selections = {"T": held(1.0), "E": held(1.0), "K": held(9.0)}
+    selections = {"T": held(0.25), "E": held(1.0), "K": held(9.0)}
     again = result(fault, Finding("lost", "S", "clock", share=0.5), other, selections=selections)
     said: Any = []
     logs = looks(monkeypatch, first, again)
@@ -83,10 +83,10 @@ def test_a_fault_is_undone_and_all_is_looked_at_again(
     assert [f.name for f in found.findings] == [fault.name, "lost", "brake"]
     assert found.findings[1] is stamp
     if fault is GAP:  # and the motors have seen the crossings
-        assert found.selections["K"] is k and found.before == {"T": 2.0, "E": 0.0, "K": 3.0}
+        assert found.selections["K"] is k and found.before == {"T": 0.5, "E": 0.0, "K": 3.0}
         assert found.findings[0].share == pytest.approx(1 - (0.5 / 3) ** 2)
     else:
-        assert found.selections["K"].held.after == 9.0 and found.before == {"T": 2.0, "E": 0.0}
+        assert found.selections["K"].held.after == 9.0 and found.before == {"T": 0.5, "E": 0.0}
         assert found.findings[0].share == pytest.approx(0.75)
 
 

@@ -238,9 +238,9 @@ def test_a_preload_s_change_in_a_plant_is_a_ramp_of_the_shortest() -> None:
 @pytest.mark.parametrize(
     ("declared", "speeds", "there"),
     [
-        ({"viscous": 2.0, "coulomb": 1.0}, True, True), ({"viscous": 2.0, "coulomb": 0.0}, True, False),
-        ({"viscous": 0.0, "coulomb": 1.0}, True, False), ({"viscous": 2.0}, True, False),
-        ({"viscous": 2.0, "coulomb": 1.0}, False, False),
+        ({"viscous": 0.5, "coulomb": 1.0}, True, True), ({"viscous": 0.5, "coulomb": 0.0}, True, False),
+        ({"viscous": 0.0, "coulomb": 1.0}, True, False), ({"viscous": 0.5}, True, False),
+        ({"viscous": 0.5, "coulomb": 1.0}, False, False),
     ],
 )  # fmt: skip
 def test_a_preload_shows_beside_friction_of_two_kinds_at_two_speeds(
@@ -259,7 +259,7 @@ def test_a_preload_shows_beside_friction_of_two_kinds_at_two_speeds(
     found = module.columns(s)
     assert bool(found) == there
     if there:
-        assert found[0] == pytest.approx(0.5 * s.view.direction + 0.5 * 2.0 * speed)
+        assert found[0] == pytest.approx(0.5 * s.view.direction + 0.5 * 0.5 * speed)
         assert asked == [("preload_change", ("change", "1"), (), np.inf)]
 
 
