@@ -92,7 +92,8 @@ X: np.ndarray = np.sin(2 * np.pi * T / 5) + 0.4 * np.sin(2 * np.pi * T / 3.3)
 PUSH_N = 4000.0
 
 
-def _given(p: Problem, _: float) -> Problem:
+def _given(p: Problem, delay_s: float) -> Problem:
+    assert delay_s == 0.0
     return p
 
 
@@ -138,6 +139,7 @@ ONE = steps((400, 405, 100.0))
         (ONE, {"after": 2.0, "floor": 0.99}, True),
         (ONE, {"after": 2.0, "square": 4.1}, True),
         (ONE, {"after": 1.5, "floor": None}, True),
+        (steps((400, 405, 1.5)), {"after": 1.5, "floor": None}, True),
         (ONE, {"floor": 49.0, "after": 99.0}, True),  # a push of two floors at least
         (ONE, {"floor": 50.0, "after": 101.0}, False),
         (ONE, {"known": 50.0}, False),  # what turns leaves twice its friction

@@ -300,3 +300,19 @@ def test_a_response_is_told_with_its_floor_and_needs(
     assert look._told(view, when, []).needs == ["late?", *([] if floor else ["was close"])]
     s.held.after = 5.1
     assert look._told(view, when, []).needs == ["late?", "was close"]
+
+
+@pytest.mark.parametrize(
+    ("few", "law", "need"), [("few values", "a law", "few values"), ("", "a law", "a law")]
+)
+def test_an_effort_that_tests_nothing_is_a_need(
+    monkeypatch: pytest.MonkeyPatch, few: str, law: str, need: str
+) -> None:
+    p = Some(channel="T")
+    monkeypatch.setattr(look, "problem_of", lambda *_: p)
+    monkeypatch.setattr(look, "few_values", lambda *_: (few, ""))
+    monkeypatch.setattr(look, "floor_of", lambda view, p: (0.7, "repeats"))
+    monkeypatch.setattr(look, "law_of_its_loop", lambda view, p, floor: law if floor == 0.7 else "")
+    monkeypatch.setattr(look, "Selection", Some(of=lambda p: "bare"))
+    b = look.look_at_forces(Some(dynamic=False), [], Some(hold_out=[]))
+    assert (b.key, b.row, b.selection, b.needs) == ("T", "torque", "bare", [need])
