@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 
 from calibration.finding import Finding, Parameter
+from calibration.inputs.declaration import Column, Response
 from calibration.look import delay as delays
+from tests.calibration.names.made import drive
 
 delay: Any = delays
 VALUE_S = 0.012495  # 12.5 ms and a little less: 12 of two digits
@@ -186,3 +188,39 @@ def test_what_is_left_is_a_mean_square_of_fitted_rows(monkeypatch: pytest.Monkey
     monkeypatch.setattr(delay, "scene_of", lambda view, p: Some(fitted=lambda x: (None, x)))
     monkeypatch.setattr(delay, "plain", lambda scene: np.array([3.0, 11.0, 0.0]))
     assert delay.left_by_the_declared(None, p) == 10.0
+
+
+@pytest.mark.parametrize("own", [True, False])
+def test_a_force_that_is_applied_is_looked_at_as_the_response(
+    monkeypatch: pytest.MonkeyPatch, own: bool
+) -> None:
+    """Turned round: minus its column is what is explained, minus the response stands in its place."""
+    rows = np.arange(6.0)
+    s = drive(rows, response=Response("force" if own else "acceleration", "N"), y=rows + 1.0,
+              base=np.column_stack([np.ones(6), 5.0 * rows]))  # fmt: skip
+    s.problem.base_labels = [("offset", "N"), ("force", "1")]
+    s.view.rig.columns["force"] = Column("N")
+    monkeypatch.setattr(delay, "scene_of", lambda view, p: (view, p))
+    view, p = delay._scene_of_the_force(s.view, s.problem, "force")
+    if own:
+        assert view is s.view and p is s.problem
+        return
+    assert (view.response.channel, view.response.unit) == ("force", "N")
+    assert p.y == pytest.approx(-5.0 * rows) and p.base[:, 1] == pytest.approx(-(rows + 1.0))
+    assert p.base[:, 0].all() and s.problem.base[:, 1] == pytest.approx(5.0 * rows)
+
+
+def test_a_force_s_delay_is_looked_for_beside_lines(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(delay, "_scene_of_the_force", lambda view, p, channel: ("scene", channel))
+    monkeypatch.setattr(delay, "lines_over_place", lambda scene: f"lines of {scene[1]}")
+    monkeypatch.setattr(delay, "effort_delay", lambda scene, lines: (scene, lines))
+    assert delay.force_delay(None, None, "force") == (("scene", "force"), "lines of force")
+
+
+def test_delays_are_tried_to_twice_the_first_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    tried: Any = []
+    monkeypatch.setattr(delay, "_left", lambda d: tried.append(d) or d * d)
+    first = Finding("channel_delay", "S", "clock", parameters={"delay": Parameter(-0.01, "s")})
+    delay._settled(first, Some(held=Some(before=10.0)), lambda d: d, lambda d: found(1.0))
+    assert len(tried) > 41 and (tried[0], tried[40]) == (pytest.approx(-0.02), pytest.approx(0.02))
+    assert max(abs(d) for d in tried[41:]) < 0.0011  # and a step about the best of them

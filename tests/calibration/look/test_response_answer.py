@@ -159,7 +159,8 @@ def answer(
         return []
 
     for name, made in (
-        ("align_counters", lambda *_: None), ("view_of", view_of), ("_through_its_filter", through),
+        ("align_counters", lambda *_: asked["said"].append("aligned")),
+        ("view_of", view_of), ("_through_its_filter", through),
         ("problem_of", lambda *_: Some(held="held")), ("look_at_law", at("law", law)),
         ("velocity_against_position", lambda view, held: asked["said"].append(view.name) or velocity),
         ("_held_names", lambda view, p, records: [view.name]), ("look_at_volts", at("volts", electric)),
@@ -176,7 +177,8 @@ def answer(
 def test_responses_law_and_volts_are_looked_at_in_turn(monkeypatch: pytest.MonkeyPatch) -> None:
     told, asked = answer(monkeypatch, balance(NAMELESS), balance(NAMED))
     assert asked["said"] == [
-        "r0: columns", "r0", "r1: columns", "command: the controller's law", "voltage: winding and back-EMF",
+        "aligned", "r0: columns",
+        "r0", "r1: columns", "command: the controller's law", "voltage: winding and back-EMF",
     ]  # fmt: skip
     assert asked["law"] == asked["volts"] == ("r1", "once of r1")  # of the first that accelerates
     assert told.title == "a rig" and told.effects == [NAMED, NAMELESS] and told.held_out == ["r0"]
@@ -245,3 +247,8 @@ def test_repairs_and_starts_are_notes(monkeypatch: pytest.MonkeyPatch) -> None:
     told, _ = answer(monkeypatch, balance(), records=[one, two], dynamic=(True,))
     assert told.notes == ["the files' starts are taken from stamps", "a, x: 3 rows"]
     assert told.remarks == ["a, y: far"]
+
+
+def test_records_that_are_too_short_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises(CalibrationInputError, match="9 rows are too few"):
+        answer(monkeypatch, balance(), records=[run(9)])
