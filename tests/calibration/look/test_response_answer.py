@@ -83,9 +83,9 @@ def test_what_is_held_out_is_named_by_file_run_and_time() -> None:
     held = np.zeros(600, dtype=bool)
     held[200:300] = held[300:450] = held[500:520] = True
     p = replace(problem(noise(rows=600), labels), session=session, held=held)
-    view = Some(t=np.arange(600) / 4 - np.repeat([0.0, 75.0], 300), rows=np.arange(600))
+    view = Some(t=np.arange(600) / 4 - np.repeat([0.0, 60.0], 300), rows=np.arange(600))
     names = list(look._held_names(view, p, [run(name="a"), run(name="b")]))
-    assert names == ["a run 1 from 50 s", "b", "b run 3 from 50 s to 54.75 s"]
+    assert names == ["a run 1 from 50 s", "b", "b run 3 from 65 s to 69.75 s"]
     turned = replace(p, turned=np.ones(600, dtype=bool))
     assert list(look._held_names(view, turned, [1, 2, 3])) == ["each of 3 files in its turn"]
 
@@ -204,7 +204,8 @@ def test_a_line_of_the_command_that_is_a_balance_s_is_told_once(
     effects = answer(monkeypatch, balance(line), law=law, dynamic=(True,))[0].effects
     assert (len(effects) == 2) == told
     plain = balance(replace(NAMED, name="gain"))
-    said, asked = answer(monkeypatch, balance(NAMED), law=plain, dynamic=(True,))
+    slow = replace(NAMED, frequency=1.0)
+    said, asked = answer(monkeypatch, balance(slow), law=plain, dynamic=(True,))
     assert len(said.effects) == 2 and asked["repaired"] == ("effort",) and len(said.balances) == 2
 
 
