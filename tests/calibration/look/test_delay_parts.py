@@ -35,7 +35,7 @@ def timed(
     monkeypatch.setattr(delay, "is_hold", lambda *_: False)
     monkeypatch.setattr(delay, "left_by_the_declared", lambda view, p: 1.0)
     monkeypatch.setattr(delay, "Selection", Some(of=lambda p: Some(held=Some(before=before))))
-    monkeypatch.setattr(delay, "dominant", lambda s: dominant)
+    monkeypatch.setattr(delay, "dominant", lambda s: dominant and s.held.after == was)
     monkeypatch.setattr(delay, "_settled", lambda *_: (late(), "moved", beside))
     return delay.timed(
         Some(period_s=0.01), lambda v: v, problem, "force", lambda p: found(was, names[0], bounds[0])
@@ -79,6 +79,7 @@ def test_a_delay_that_takes_a_twentieth_or_a_name_is_taken(
         {"was": 10.0, "now": 10.0, "names": (2, 1)},
         {"was": 10.0, "now": 10.1, "names": (2, 1)},
         {"was": 2.0, "now": 1.5, "dominant": True},
+        {"was": 5.0, "now": 4.78, "dominant": True},  # 2.15 of 77
     ],
 )
 def test_a_delay_that_takes_little_is_not(monkeypatch: pytest.MonkeyPatch, given: dict[str, Any]) -> None:
