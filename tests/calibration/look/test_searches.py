@@ -9,6 +9,7 @@ import pytest
 
 from calibration.balances.candidate import Candidate
 from calibration.finding import Finding
+from calibration.inputs.declaration import Stage
 from calibration.look import fewvalues, gap, scene, search, torque
 from tests.calibration.look.test_steps_and_events import problem
 from tests.calibration.names.made import drive
@@ -383,3 +384,52 @@ def test_a_scene_has_declared_numbers_and_what_its_flexible_fit_leaves(
     assert scene.residual == pytest.approx(np.zeros(8), abs=1e-9)
     monkeypatch.setattr(look, "free_lines", lambda scene: [])
     assert look.lines_over_place(scene).shape == (8, 0)
+
+
+@pytest.mark.parametrize(
+    ("values", "taken", "motion", "why"),
+    [
+        (4, 0.0, True, ""),  # more values than three terms
+        (3, 0.26, True, "explained"),
+        (3, 0.25, True, "tests no balance"),
+        (3, 0.9, False, "tests no balance"),  # nothing is accelerated
+    ],
+)
+def test_an_effort_of_few_values_tests_no_balance(
+    monkeypatch: pytest.MonkeyPatch, values: int, taken: float, motion: bool, why: str
+) -> None:
+    """Its motion is explained by it, where that takes more than a quarter of the square."""
+    estimate = ("inertia",) if motion else ("coulomb",)
+    before = Some(channel="effort"), Some(estimate=estimate, constants={}), {"effort": 1}
+    view = Some(response=before[0], rig=before[1], columns=before[2])
+
+    def turn_round(view: Any) -> None:
+        view.response = view.rig = view.columns = "turned"
+
+    def made(delay_s: float) -> Any:
+        assert delay_s == 0.0
+        return Some(base=np.ones((9, 3)), y=None)
+
+    monkeypatch.setattr(few, "numbers", lambda records, channel: np.arange(9.0) % values)
+    monkeypatch.setattr(few, "_turn_round", turn_round)
+    monkeypatch.setattr(few, "_takes", lambda p: taken)
+    texts = few.few_values(view, [], made)
+    assert [bool(t) for t in texts] == [why == "tests no balance", why == "explained"]
+    assert why in "".join(texts) and (
+        values > 3 or "effort holds 3 values, the model has 3 terms" in "".join(texts)
+    )
+    assert (view.response == "turned") == (why == "explained")
+    if why != "explained":
+        assert (view.response, view.rig, view.columns) == before
+
+
+def test_between_two_encoders_there_is_the_roller_s_and_not_its_gear() -> None:
+    m: Any = drive(np.arange(6.0)).view
+    roller, worm = (Stage(name, 1.0, None, 1, "gear_eccentricity") for name in ("roller", "worm"))
+    m.rig = replace(m.rig, stages=(roller, worm))
+    m.frame = Some(columns={}, get=lambda name: None, run=np.zeros(6, dtype=np.int64))
+    pair = Some(motion=m, motor=None, train=Some(one=lambda name: name))
+    for channel_, stages in (("S", (replace(roller, kind="encoder_eccentricity"),)), ("K", (roller, worm))):
+        told = pairs.scene_of_balance(pair, Some(channel=channel_, unit="arcsec"), np.zeros(6), {})
+        assert told.view.rig.stages == stages
+    assert m.rig.stages == (roller, worm)
