@@ -358,3 +358,8 @@ def test_names_that_lack_something_are_not_looked_for(monkeypatch: pytest.Monkey
     }
     monkeypatch.setattr(words, "NAMES", names)
     assert words.lacking_names(None, "force") == ["not looked for: a: a speed"]
+
+
+def test_a_second_sensor_of_half_the_travel_is_not_turned() -> None:
+    view = Some(response=Response("position2", "m", ratio=0.5))
+    assert look.turned(view, None, None) == [] and view.response.ratio == 0.5
