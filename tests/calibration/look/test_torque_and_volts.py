@@ -337,3 +337,55 @@ def test_too_few_volts_tell_no_constant(monkeypatch: pytest.MonkeyPatch) -> None
     assert per_ampere == pytest.approx(0.5) and left == ([], 1.0) and said == [] and few.selections == {}
     _, (per_ampere, _), _ = electrical(monkeypatch, balance=False)
     assert per_ampere == pytest.approx(0.4)
+
+
+@pytest.mark.parametrize(
+    ("floor", "step", "sure", "constant", "signs"),
+    [
+        (0.3, 0.1, 0.3, 4.0, []),
+        (0.3, 0.5, 0.5, 4.0, []),  # less than its meters are sure to
+        (None, 0.5, None, 4.0, []),
+        (0.3, 0.1, 0.3, -4.0, ["torque_constant comes out as -4: the position counts the other way"]),
+    ],
+)
+def test_volts_of_a_rig_are_told_with_their_floor_and_signs(
+    monkeypatch: pytest.MonkeyPatch, floor: Any, step: float, sure: Any, constant: float, signs: list[str]
+) -> None:
+    """A resistance of 9 ohm that is 4 beside what was found: of the heat the root of 9 / 4."""
+    declared = {"resistance": 9.0, "torque_constant": constant, "offset": 0.0}
+    final = {"resistance": 4.0, "torque_constant": 2.0, "offset": 1.0}
+    asked: dict[str, Any] = {}
+    p = Some(train="train", y=np.zeros(3), step=step, by_name=lambda beta: final,
+             plain_fit=lambda rows: (declared, np.ones(3)))  # fmt: skip
+    b = Some(problem=p, windings="windings", floor=floor, floor_from="meters")
+    s = Some(chosen=["one"], after=Some(beta=None))
+    first, more = Finding("winding_heating", "E", "time"), Finding("more", "E", "time")
+
+    def retold(f: Finding, quotients: dict[str, float]) -> Finding:
+        asked["quotients"] = quotients
+        return f.noted("retold")
+
+    def left_over(of: Any, scene: Any, at: Any) -> Any:
+        asked.setdefault("left", []).append(at)
+        return "left" if of == "together" else "alone"
+
+    for name, made in (
+        ("volts_balance", lambda view, balance: b), ("replace", lambda view, response: response),
+        ("Scene", lambda view, p, known, left, wander, windings: Some(shape=wander.shape)),
+        ("offered", lambda scene: [scene]), ("select", lambda p, some, around: (some, around)),
+        ("signed", lambda given: s if given[1] and given[0][0].shape == (3, 0) else None),
+        ("leave_out", lambda s, rule: s), ("beyond_names", lambda s, scene: (s, "together", [more])),
+        ("NAMES", {"winding_heating": Some(retold=retold)}), ("findings_of", lambda s, k: [first]),
+        ("settle", lambda found, left, key: [*found, left, key]), ("left_over", left_over),
+        ("calibrated", lambda s: {"resistance": 1}), ("lacking_names", lambda scene, kind: [f"lacks {kind}"]),
+    ):  # fmt: skip
+        monkeypatch.setattr(meter, name, made)
+    found = meter.look_at_volts("view", "balance")
+    assert (found.key, found.row, found.selection, found.floor) == ("E", "electrical", "together", floor)
+    assert [getattr(f, "name", f) for f in found.findings] == ["winding_heating", "more", "alone", "E"]
+    assert found.findings[0].note == "retold" and found.missing == "left" and asked["left"] == [sure, sure]
+    wanted = {"resistance": 1.5} | ({"torque_constant": 2.0} if constant > 0 else {})
+    assert asked["quotients"] == pytest.approx(wanted)
+    assert found.notes == ["floor of the volts: meters", *signs, "lacks volts"]
+    monkeypatch.setattr(meter, "volts_balance", lambda view, balance: None)
+    assert meter.look_at_volts("view", "balance") is None
