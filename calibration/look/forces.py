@@ -164,8 +164,7 @@ def _told(view: View, when: Timed, notes: list[str]) -> Balance:
         s = told(s, scene)
     problem = s.problem
     floor, source = floor_of(view, problem)
-    wind = wound_up(view, s) if floor else 0.0
-    if wind and floor:
+    if floor and (wind := wound_up(view, s)):
         floor, source = float(np.hypot(floor, wind)), f"{source}, and the effort's through the wind-up"
     still = [] if np.any(np.abs(view.direction) > 0.5) else ["the position does not move"]
     through, most = filtered(view)

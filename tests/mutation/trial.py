@@ -23,6 +23,8 @@ from tests.mutation.session import Test, run
 OURS = ("bus", "boards", "plant", "host", "calibration", "scenarios", "tests", "docs", "schmidt")
 MOST_BYTES = 4 << 30
 """Of memory: a mutant that never ends does not take the machine's."""
+COMPILED_S = 8.0
+"""Of the processor, for what numba compiles anew once all is imported again."""
 
 
 class Substitute(importlib.abc.MetaPathFinder, importlib.abc.Loader):
@@ -41,10 +43,10 @@ class Substitute(importlib.abc.MetaPathFinder, importlib.abc.Loader):
         exec(self.code, module.__dict__)
 
 
-def limit(test: Test) -> None:
-    """End this process if the test takes several times what it takes without a mutation."""
+def limit(test: Test, more_s: float = 0.0) -> None:
+    """End this process if the test takes several times what it takes without a mutation, and `more_s`."""
     signal.signal(signal.SIGPROF, signal.SIG_DFL)
-    signal.setitimer(signal.ITIMER_PROF, 0.5 + 10 * test.cpu)
+    signal.setitimer(signal.ITIMER_PROF, 0.5 + more_s + 10 * test.cpu)
     signal.alarm(60 + round(20 * test.wall))
 
 
@@ -61,7 +63,7 @@ class Chosen:
         )
 
     def pytest_runtest_setup(self, item: pytest.Item) -> None:
-        limit(self.tests[item.nodeid])
+        limit(self.tests[item.nodeid], COMPILED_S)
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         if report.failed:

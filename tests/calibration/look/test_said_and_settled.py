@@ -145,7 +145,7 @@ def test_an_effort_that_never_changes_its_sign_is_a_doubt() -> None:
     assert wobble("force", size, coulomb=0.06 * np.std(size)) == []
     assert wobble("force", size, labels=["coulomb", "gravity_cos"]) == []
     assert wobble("force", size, labels=["applied", "coulomb"]) == []
-    for back, doubted in ((0.16, False), (0.17, True)):  # a fifth of the rows one way
+    for back, doubted in ((0.16, False), (1 / 6, False), (0.17, True)):  # a fifth of the rows one way
         way = np.where(np.arange(ROWS) < back * ROWS, -1.0, 1.0)
         assert bool(wobble("force", size, direction=way)) == doubted
 

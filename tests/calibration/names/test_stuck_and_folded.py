@@ -107,3 +107,17 @@ def test_an_axis_that_comes_to_rest_repeats_nothing() -> None:
     last = 1e-6 * 499
     x = np.concatenate([1e-6 * np.arange(500.0), np.full(8, last), last + 1e-9 * np.arange(500.0)])
     assert sample_loss.stamps(frame(x)) is None
+
+
+def test_a_leap_that_the_velocity_has_is_no_wrap() -> None:
+    """An axis at rest but for three rows, in which both encoders see 2^17 counts."""
+    steps = np.where(np.isin(np.arange(ROWS), (200, 500, 800)), 2.0**17, 0.0)
+    seen = {"velocity": steps * COUNT / PERIOD_S}
+    assert log_wrap.repair_wraps(run(np.cumsum(steps), columns=seen)) is None
+    assert log_wrap.repair_wraps(run(np.cumsum(steps))) is not None
+
+
+def test_rows_that_stand_at_the_log_s_end_may_be_rest() -> None:
+    x = 1e-6 * np.minimum(np.arange(1000.0), 993.0)
+    log = frame(x)
+    assert sample_loss.stamps(log) is None and not np.isnan(log.columns["position"]).any()
