@@ -24,6 +24,7 @@ _PX = r"([+-]?(?:[0-9]{1,9}(?:\.[0-9]*)?|\.[0-9]+))(?![0-9.])"
 _DITHER = re.compile(rf"DITHER by {_PX}, {_PX}")
 _LOCK = re.compile(rf"[Ll]ock pos(?:ition)?\s*=\s*{_PX}, {_PX}")
 _SCALE = re.compile(r"[Pp]ixel scale\s*=\s*([0-9.,+-]+)\s*arc-sec/px")
+_HEAD = re.compile(r"\W*PHD2 version")
 _TABLE = re.compile(r"\s*\"?Frame\"?,\s*\"?Time\"?,\s*\"?mount\"?,", re.IGNORECASE)
 _MOUNT = re.compile(r"^Mount\s*=\s*([^,\r\n]+)", re.MULTILINE)
 _START = re.compile(r"Guiding Begins at (\d{4}-\d\d-\d\d \d\d:\d\d:\d\d)")
@@ -34,7 +35,7 @@ MARKS = ("Mount", "AO", "DROP")
 def is_guide_log(text: str) -> bool:
     """True when the text looks like a PHD2 guide log, or like one of its guiding tables."""
     head = text[:20000]
-    return "PHD2" in head[:200] or "Guiding Begins" in head or bool(_TABLE.match(head))
+    return "Guiding Begins" in head or bool(_HEAD.match(head) or _TABLE.match(head))
 
 
 def read_guide_log(path: Path, text: str | None = None) -> list[Run]:

@@ -152,7 +152,8 @@ def _as_multiples(steps: Array, least: float) -> float | None:
     q = float(np.median(near)) if len(near) else least
     multiple = steps / q
     small = multiple < limits.MOST_MULTIPLE  # beyond, q's own error adds up
-    fits = np.abs(multiple - np.round(multiple)) < limits.WHOLE_STEPS
-    # how often so many would all be whole by luck, the one that `q` is aside, among so many steps
-    luck = (2 * limits.WHOLE_STEPS) ** (small.sum() - 1) * len(steps)
-    return q if luck < 1 and np.mean(fits[small]) >= limits.STEPS_SHARE else None
+    off = np.abs(multiple - np.round(multiple))[small]
+    fits = off < limits.WHOLE_STEPS
+    # how often so many would all be as whole by luck, the one that `q` is aside, among so many steps
+    luck = (2 * float(off[fits].max(initial=0.0))) ** (small.sum() - 1) * len(steps)
+    return q if luck < limits.LUCKY_COLUMN and np.mean(fits) >= limits.STEPS_SHARE else None

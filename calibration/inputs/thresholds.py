@@ -94,6 +94,8 @@ SMALL_STEPS = 0.02
 STEPS_SHARE = 0.995  # share of all steps that are whole multiples of a quantum. ASSUMPTION
 # of a quantum, by which a step may miss a whole multiple: what a text file's digits leave. ASSUMPTION
 WHOLE_STEPS = 0.02
+# columns without a quantum that have one by luck: one in ten thousand. ASSUMPTION
+LUCKY_COLUMN = 1e-4
 MOST_MULTIPLE = 50  # times a quantum: beyond, the quantum's own error adds up to WHOLE_STEPS. ASSUMPTION
 WHOLE = 1e-3  # of a count of steps, by which a text file's digits may miss a whole one. ASSUMPTION
 FINEST = 1e-7  # of a column's range: its step, where none can be told. ASSUMPTION: below any sensor's

@@ -72,4 +72,6 @@ def test_cogging_that_the_rotor_follows_has_its_size(tmp_path: Path) -> None:
 def test_cogging_at_one_speed_is_not_filtered_away(tmp_path: Path) -> None:
     """Six hertz, of which the filter that the position asks for leaves none: the current shows them."""
     found = looked(tmp_path, cogging=0.02, cogs=2, steady=20.0)
-    assert (found.effects[0].name, found.effects[0].harmonic) == ("motor_cogging", 2)
+    first = found.effects[0]
+    # at one speed and load a torque over the angle is cogging or ripple, of which the last digits decide
+    assert "motor_cogging" in (first.name, *first.equivalent) and first.harmonic == 2

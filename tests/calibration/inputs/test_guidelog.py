@@ -47,8 +47,9 @@ def refused(text: str) -> str:
     ("text", "is_one"),
     [
         ("PHD2 version 2.6", True),
-        ("x" * 196 + "PHD2", True),
-        ("x" * 197 + "PHD2", False),
+        ("\ufeff\n PHD2 version 2.6", True),
+        ("t,PHD2 version", False),
+        ("PHD2,t", False),
         ("x" * 19_986 + "Guiding Begins", True),
         ("x" * 19_987 + "Guiding Begins", False),
         (NAMES, True),

@@ -33,8 +33,9 @@ def steps(*counted: tuple[float, int]) -> np.ndarray:
         (steps((1.0, 100), (50.5, 100)), 1.0, 1.0),  # beyond fifty its own error adds up
         (steps((1.0, 1), (70.5, 1)), 1.0, None),  # two are whole by luck
         (steps((1.0, 1), (2.0, 1), (7.5, 0)), 1.0, 1.0),
-        (steps((1.0, 1), (2.0, 1), (70.5, 23)), 1.0, None),  # 0.04 of 25
-        (steps((1.0, 1), (2.0, 1), (70.5, 22)), 1.0, 1.0),
+        (steps((1.0, 1), (2.0, 1), (70.5, 23)), 1.0, 1.0),  # just whole
+        (steps((1.0, 3), (2.001, 1), (70.5, 22)), 1.0, 1.0),
+        (steps((1.0, 1), (2.015, 1), (70.5, 22)), 1.0, None),  # about whole, as 0.03 of 24 are
         (steps((4.0, 50), (6.0, 50)), 2.0, 2.0),
     ],
 )
