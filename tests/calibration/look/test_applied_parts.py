@@ -126,9 +126,9 @@ def test_a_column_that_is_shifted_by_nothing_keeps_both_ends_and_its_gaps() -> N
     ("before", "after", "floors", "helps"),
     [
         ({"T": 1.0}, {"T": 0.99}, {}, False),  # a hundredth is no fall
-        ({"T": 0.1, "K": 0.1}, {"T": 0.09, "K": 0.107}, {}, False),
+        ({"T": 0.1, "K": 0.1}, {"T": 0.09, "K": 0.112}, {}, False),  # together they rise
         ({"T": 2.0, "K": 1.0}, {"T": 0.9, "K": 1.12}, {}, True),
-        ({"T": 1.0, "K": 1.0}, {"T": 0.5, "K": 1.12}, {}, False),  # half is not much yet
+        ({"T": 2.0, "K": 2.0}, {"T": 1.0, "K": 2.4}, {}, False),  # by a fifth one may not
         ({"T": 1.0, "K": 1.0}, {"T": 0.4, "K": 1.15}, {}, True),
     ],
 )

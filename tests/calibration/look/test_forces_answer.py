@@ -20,7 +20,8 @@ LATE = ("force", "applied")
 def timed(before: float = 4.0, after: float = 2.0, names: int = 1, name: str = "first") -> Any:
     """A search that chose so many names."""
     held = Some(before=before, after=after, taken=before**2 - after**2)
-    return Timed(Some(name=name), (Some(held=held, chosen=[1] * names, name=name), Some(), []))
+    s = Some(held=held, left=after**2, chosen=[1] * names, name=name)
+    return Timed(Some(name=name), (s, Some(), []))
 
 
 @pytest.mark.parametrize(
@@ -256,7 +257,8 @@ def test_a_response_is_told_with_its_floor_and_needs(
         return f
 
     for name, made in (
-        ("where_known", same), ("told_by_the_clock", same), ("told_by_the_way", same), ("weight_first", same),
+        ("where_known", same), ("told_by_the_clock", same), ("told_by_the_way", same),
+        ("told_by_the_speed", same), ("weight_first", same),
         ("floor_of", lambda view, p: (floor, "repeats")), ("wound_up", lambda view, s: wind),
         ("filtered", lambda view: ("the filter takes half", asked.get("most", True))),
         ("beyond_names", lambda s, scene: (s, s, [])), 

@@ -50,7 +50,7 @@ def chosen(after: float, *costs: int, before: float = 2.0, floor: float = 0.5, n
 def test_a_shape_alone_replaces_names_that_take_less(
     monkeypatch: pytest.MonkeyPatch, one: Any, other: Any, clear: bool, more: bool
 ) -> None:
-    monkeypatch.setattr(look.rules, "clear", lambda s: clear)
+    monkeypatch.setattr(look.drive, "clear", lambda s: clear)
     assert look._takes_more(one, other) == more
 
 
@@ -146,12 +146,8 @@ def rounds(
     )
     monkeypatch.setattr(look, "_takes_more", lambda one, s: more and one.before == 7)
     monkeypatch.setattr(look, "one_line", lambda s, scene: s)
-    monkeypatch.setattr(look, "rules", Some(
-        signed=lambda s: s, leave_out=lambda s, *rules: s, within_bounds=lambda resolved: None,
-        cancelled=None,
-        within_own_errors=None, remainder=None, worth_little=None, feeds_energy=None, harmful=None,
-        below_floor=None, of_the_steps=None,
-    ))  # fmt: skip
+    monkeypatch.setattr(look, "signed", lambda s: s)
+    monkeypatch.setattr(look, "leave_out", lambda s, *rules: s)
     _, scene = look._search(s.view, Some(y=np.ones(4)))
     assert scene is s
     return asked

@@ -126,7 +126,7 @@ def gapped(
     )
     monkeypatch.setattr(look, "replace", lambda x, **more: Some(**{**vars(x), **more}))
     signed: Any = []
-    monkeypatch.setattr(look.rules, "signed", lambda s: signed.append(s) or s)
+    monkeypatch.setattr(look, "signed", lambda s: signed.append(s) or s)
 
     def keep(chosen: Any) -> Any:
         after = chosen[-1].left if hasattr(chosen[-1], "left") else before
