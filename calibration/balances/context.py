@@ -9,7 +9,7 @@ from calibration.arrays import Array
 
 
 def turning_points(angle: Array, run: NDArray[np.int64], travel: float) -> NDArray[np.bool_]:
-    """True at every extreme that is followed by at least `travel` the other way, and where a run starts."""
+    """True at every extreme that is followed by more than `travel` the other way, and where a run starts."""
     out = np.zeros(len(angle), dtype=bool)
     start = low = high = heading = 0  # low, high: the extremes since the last turn
     values, runs = angle.tolist(), run.tolist()

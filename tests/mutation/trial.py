@@ -24,7 +24,7 @@ OURS = ("bus", "boards", "plant", "host", "calibration", "scenarios", "tests", "
 MOST_BYTES = 4 << 30
 """Of memory: a mutant that never ends does not take the machine's."""
 COMPILED_S = 8.0
-"""Of the processor, for what numba compiles anew once all is imported again."""
+"""Of the processor, for what numba compiles anew once all is imported again. ASSUMPTION: a few kernels."""
 
 
 class Substitute(importlib.abc.MetaPathFinder, importlib.abc.Loader):
