@@ -5,6 +5,7 @@ Are the 5 ms ticks on time? `Punctuality` holds the wall time of each against wh
 
 from collections import Counter, deque
 from collections.abc import Callable
+from itertools import accumulate
 from time import perf_counter, sleep
 
 from bus.time import EventQueue
@@ -143,20 +144,20 @@ class Punctuality:
     @property
     def on_time(self) -> float:
         """Share of the ticks within 1 ms of due; nan before the first."""
-        return self._below(round(ON_TIME_S / _BIN_S)) / self.ticks if self.ticks else float("nan")
+        if not self.ticks:
+            return float("nan")
+        early = round(ON_TIME_S / _BIN_S)
+        return sum(count for each, count in self._bins.items() if each < early) / self.ticks
 
     def quantile_s(self, share: float) -> float:
         """The lateness that `share` of the ticks stay below, to a bin, never more than the worst; nan before
         the first."""
         if not self.ticks:
             return float("nan")
-        need = share * self.ticks
-        last = next(each for each in sorted(self._bins) if self._below(each + 1) >= need)
+        each = sorted(self._bins)
+        reached = accumulate(self._bins[one] for one in each)
+        last = next(one for one, below in zip(each, reached, strict=True) if below >= share * self.ticks)
         return self.worst_s if last == _LAST else min((last + 1) * _BIN_S, self.worst_s)
-
-    def _below(self, end: int) -> int:
-        """Ticks in the bins before `end`."""
-        return sum(count for each, count in self._bins.items() if each < end)
 
     def restart(self) -> None:
         """Count afresh from here."""

@@ -189,6 +189,15 @@ def test_a_share_of_the_ticks_stays_below_a_quantile(wall: Wall) -> None:
     assert probe.on_time == pytest.approx(8 / 9)
 
 
+@pytest.mark.timeout(30)  # the square of the bins would take ten minutes, and hold up every door
+def test_ticks_that_are_late_by_all_sorts_are_told_at_once(wall: Wall) -> None:
+    probe = probed(wall)
+    probe._bins.update(dict.fromkeys(range(100_000), 1))
+    probe.ticks, probe.worst_s = 100_000, 1.0
+    assert probe.quantile_s(0.999) == pytest.approx(0.999)
+    assert probe.on_time == pytest.approx(0.001)
+
+
 def test_beyond_a_second_the_worst_is_what_is_told(wall: Wall) -> None:
     probe = probed(wall, 0.5, 1.5, 9.0)
     assert probe.quantile_s(0.3) == pytest.approx(0.5, abs=2e-5)
