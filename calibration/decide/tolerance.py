@@ -90,19 +90,20 @@ def fitted_numbers(torque: Torque, after: Fit, largest: float = LARGEST_CORRECTI
 
 
 def calibrated_numbers(
-    torque: Torque, after: Fit, used: Array, scale_error: float
+    torque: Torque, after: Fit, used: Array, scale_error: float, blocks: Array
 ) -> tuple[dict[str, Estimate], dict[str, Parameter]]:
     """The drive's numbers that the motion holds apart, SI, and with their 95 % intervals.
 
     `after`: a fit behind the torque's base; `used` (rows, p): its fitted rows. `scale_error`: relative
-    standard error of the N m per ampere, which all share.
+    standard error of the N m per ampere, which all share. `blocks` (p,): that carry each coefficient.
     """
     p = torque.problem
     columns = [*LINEAR, *(f"log_{name}" for name in CURVED)]
-    apart = inflation(used[:, [p.place(c) for c in columns]]) < INFLATION
+    places = dict(zip((*LINEAR, *CURVED), (p.place(c) for c in columns), strict=True))
+    apart = inflation(used[:, list(places.values())]) < INFLATION
     fitted = fitted_numbers(torque, after)
-    numbers = {n: fitted[n] for n, good in zip((*LINEAR, *CURVED), apart, strict=True) if good}
-    return numbers, {n: _span(n, one, scale_error, len(used) / p.block) for n, one in numbers.items()}
+    numbers = {n: fitted[n] for n, good in zip(places, apart, strict=True) if good}
+    return numbers, {n: _span(n, one, scale_error, blocks[places[n]]) for n, one in numbers.items()}
 
 
 def _span(name: str, one: Estimate, scale_error: float, blocks: float) -> Parameter:

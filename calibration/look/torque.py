@@ -21,6 +21,7 @@ from calibration.look.scene import scene_of_pair
 from calibration.look.volts import DENIED, volts_deny
 from calibration.names import NAMES, offered
 from calibration.names.adc_offset import NAME as OFFSET
+from calibration.statistics.carried import carried
 from calibration.statistics.whitening import white_noise
 from plant.effects import REGISTRY
 
@@ -64,10 +65,10 @@ def torque_channel(result: AxisResult, drive: Transmission) -> None:
         moving = np.asarray(binary_dilation(moving, iterations=round(REST_S / m.cell_s)))
     everything = replace(p, valid=whole & moving)
     x = everything.design(s.candidates)
-    all_rows = everything.fit(x)
+    all_rows, blocks = carried(everything.fit(x), x, everything.train, p.block)
     seen = seen_speeds(m.speed[m.rows][everything.train], result.declared)
     used = x[everything.train]
-    numbers, calibrated = calibrated_numbers(torque, all_rows, used, result.scale_error)
+    numbers, calibrated = calibrated_numbers(torque, all_rows, used, result.scale_error, blocks)
     known = set(numbers) >= NEEDED and numbers["coulomb"].value > 0
     if enough and known and len(used) >= FEWEST_BLOCKS * p.block:
         found = changes(numbers, calibrated, result.declared, seen)

@@ -148,11 +148,11 @@ def test_calibrated_numbers_have_students_interval_of_noise_model_and_scale() ->
     """A rigid model errs by 0.6 % of the inertia, by 0.15 % of the other numbers."""
     beta = {"inertia": 7.0, "viscous": 3.0, "coulomb": 0.5}
     made, fit = torque(beta, {"inertia": 0.01, "viscous": 0.01})
-    used = made.problem.base[:400]
-    numbers, spans = calibrated_numbers(made, fit, used, 0.002)
+    blocks = np.where(np.array(TERMS) == "viscous", 7.0, 20.0)  # that carry it
+    numbers, spans = calibrated_numbers(made, fit, made.problem.base, 0.002, blocks)
     assert list(numbers) == list(spans) == NUMBERS and numbers == fitted_numbers(made, fit)
-    reach = stats.t.ppf(0.975, 400 / 20 - 2)
-    for name, value, model in (("inertia", 7.0, 0.006), ("viscous", 3.0, 0.0015)):
+    for name, value, model, freedom in (("inertia", 7.0, 0.006, 18), ("viscous", 3.0, 0.0015, 5)):
+        reach = stats.t.ppf(0.975, freedom)
         error = np.hypot(0.01, np.hypot(model, 0.002) * value)
         span = spans[name]
         assert (span.low, span.high) == pytest.approx((value - reach * error, value + reach * error))
@@ -168,7 +168,7 @@ def test_numbers_that_the_motion_does_not_hold_apart_are_not_told(common: float,
     at = TERMS.index("log_stiction")
     used[:, at] = np.sqrt(common) * used[:, TERMS.index("viscous")] + np.sqrt(1 - common) * used[:, at]
     used[:, TERMS.index("offset")] = used[:, TERMS.index("inertia")]  # of no number
-    numbers, spans = calibrated_numbers(made, fit, used, 0.0)
+    numbers, spans = calibrated_numbers(made, fit, used, 0.0, np.full(len(TERMS), 9.0))
     assert list(numbers) == list(spans)
     assert list(numbers) == [n for n in NUMBERS if apart or n not in ("viscous", "stiction")]
 

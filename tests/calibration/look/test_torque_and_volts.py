@@ -153,6 +153,7 @@ def channel(
     monkeypatch.setattr(look, "white_noise", lambda *_: None)
     monkeypatch.setattr(look, "wind", lambda *_: blowing)
     monkeypatch.setattr(look, "beside_wind", lambda f: f.name == "strong")
+    monkeypatch.setattr(look, "carried", lambda fit, x, train, block: (fit, np.full(x.shape[1], block)))
     monkeypatch.setattr(look, "seen_speeds", lambda rate, declared: asked.update(seen=len(rate)))
     given = NUMBERS if numbers is None else numbers
     monkeypatch.setattr(look, "calibrated_numbers", lambda *_: (given, {

@@ -25,7 +25,11 @@ def power(monkeypatch: pytest.MonkeyPatch, share: float = 0.08, rig: Rig = BENCH
     train = np.arange(count) < count * more.pop("part", 0.75)
     rest = np.resize([2.0, -2.0], count)
     p = SimpleNamespace(
-        train=train, test=~train, unit="N", blocks=25, plain_fit=lambda at: ({}, rest * (at == train)),
+        train=train,
+        test=~train,
+        unit="N",
+        blocks=25,
+        plain_fit=lambda at: ({}, rest * (at == train)),
         base_labels=[("scale", "1"), ("offset", "N")],
     )
     view = SimpleNamespace(
