@@ -5,6 +5,7 @@ import pytest
 
 from calibration.statistics.carried import carried
 from calibration.statistics.regression import gls
+from calibration.statistics.tails import student_reach
 
 BLOCK, BLOCKS = 20, 30
 ROWS = np.ones(BLOCK * BLOCKS, dtype=bool)
@@ -40,9 +41,7 @@ def test_errors_are_those_of_fits_without_a_block_each() -> None:
 
 
 def test_intervals_of_few_blocks_hold_the_truth_as_often_as_they_say() -> None:
-    """A wave of each block's own, of which three blocks carry the coefficient: 95 % within Student's reach."""
-    from calibration.statistics.tails import student_reach
-
+    """A wave of each block's own, three of which carry the coefficient: 95 % within Student's reach."""
     held = {"plain": 0, "carried": 0}
     for seed in range(400):
         rng = np.random.default_rng(seed)
