@@ -13,11 +13,10 @@ from calibration.statistics.thresholds import SINGULAR
 
 
 def carried(fit: Fit, x: Array, valid: Mask, block: int) -> tuple[Fit, Array]:
-    """The fit of x (n, p) with errors from leaving out a block of `block` rows at a time, and the blocks (p,)
-    that carry each coefficient.
+    """The fit of x (n, p) with the jackknife's errors over blocks of `block` rows, no smaller than before.
 
-    Errors are the jackknife's, no smaller than before (Bell and McCaffrey 2002). Blocks are counted by
-    weight, as (sum w)^2 / sum w^2 (Carter, Schnepel and Steigerwald 2017).
+    Also the blocks (p,) that carry each coefficient, counted by weight: (sum w)^2 / sum w^2. Sources: Bell
+    and McCaffrey 2002; Carter, Schnepel and Steigerwald 2017.
     """
     rows, e = fit.whitener.whiten(x, valid), fit.whitener.whiten(fit.residual, valid)
     label = np.arange(len(rows)) // block
