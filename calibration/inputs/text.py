@@ -139,9 +139,19 @@ def heading(path: Path, text: str, names: tuple[str, ...] = (), delimiter: str |
     first = next((k for k in range(first, len(lines)) if not _is_blank(lines[k], mark)), len(lines))
     if first == len(lines):
         raise CalibrationInputError(path, "has no data rows", first)
-    if len(fields) != (width := len(lines[first].split(mark))):
-        raise CalibrationInputError(path, f"{width} fields, {len(fields)} names", first + 1)
+    width = len(lines[first].split(mark))
+    if width == len(fields) + 1 and lines[first].rstrip(" ").endswith(mark):  # a writer that ends rows so
+        lines[first:] = [_unended(line, mark, width) for line in lines[first:]]
+    elif width != len(fields):
+        hint = ": every column needs one" if width > len(fields) else ""
+        raise CalibrationInputError(path, f"{width} fields, {len(fields)} names{hint}", first + 1)
     return Heading(path, lines, fields, first, mark, skip - 1 if fields == said else skip)
+
+
+def _unended(line: str, mark: str, width: int) -> str:
+    """A row of `width` fields, the last of which is empty, without that one."""
+    bare = line.rstrip(" ")
+    return bare.removesuffix(mark) if bare.count(mark) == width - 1 else line
 
 
 def _is_blank(line: str, mark: str) -> bool:

@@ -61,7 +61,22 @@ def test_names_and_a_delimiter_that_are_given_come_first() -> None:
     assert at("1,2\n3,4\n", "a", "b") == (["a", "b"], 0, ",", 0)
     assert at("t,q\n1,2\n", "a", "b")[:2] == (["a", "b"], 0)
     assert at("1,5;2\n", "a", "b", delimiter=";")[:3] == (["a", "b"], 0, ";")
-    assert refused(heading, PATH, "1,2\n", ("a",)) == "x.csv:1: 2 fields, 1 names"
+    assert refused(heading, PATH, "1,2\n", ("a",)) == "x.csv:1: 2 fields, 1 names: every column needs one"
+
+
+@pytest.mark.parametrize("mark", [",", ";", "\t"])
+def test_rows_that_end_in_the_delimiter_have_no_column_more(mark: str) -> None:
+    """As many a microcontroller prints them; a last line that is cut off is left out."""
+    text = "t,q\n1,2,\n3,4, \n5,6\n7,,\n8".replace(",", mark)
+    found = heading(PATH, text).read(["t", "q"])
+    assert found["t"].tolist() == [1, 3, 5, 7] and found["q"].tolist()[:3] == [2, 4, 6]
+    assert np.isnan(found["q"][3])
+    assert heading(PATH, "t,q,\n1,2,\n".replace(",", mark)).fields == ["t", "q", ""]
+
+
+def test_a_row_that_ends_so_and_has_one_more_is_refused() -> None:
+    table = heading(PATH, "t,q\n1,2,\n3,4,5\n6,7,\n")
+    assert refused(table.read, ["t", "q"]).startswith("x.csv:3: 3 fields, the header row has 2")
 
 
 @pytest.mark.parametrize(
@@ -70,7 +85,7 @@ def test_names_and_a_delimiter_that_are_given_come_first() -> None:
         ("", "x.csv: has no data rows"),
         ("# a\n\n% b\n", "x.csv:3: has no data rows"),
         ("t,q\n", "x.csv:1: has no data rows"),
-        ("t,q\n1,2,3\n", "x.csv:2: 3 fields, 2 names"),
+        ("t,q\n1,2,3\n", "x.csv:2: 3 fields, 2 names: every column needs one"),
         (
             ",".join("abc" + str(k) for k in range(4097)) + "\n",
             "x.csv:1: 4097 columns, at most 4096: is it transposed?",
