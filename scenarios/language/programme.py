@@ -76,12 +76,7 @@ class Programme:
                 self._advance(index, t_ns)
 
     def _start_ready(self, t_s: float) -> None:
-        in_line = False
         for index in list(self._waiting):
-            beside = self.records[index].step.after is not None
-            if not beside and in_line:
-                continue  # an earlier step of the line has not even started
-            in_line = in_line or not beside
             if self._may_start(index, t_s):
                 self._waiting.remove(index)
                 self._start(index, t_s)

@@ -116,6 +116,15 @@ def door(tmp_path: Path) -> Iterator[Door]:
         each.close()
 
 
+def test_a_client_of_a_network_is_called_by_its_host() -> None:
+    known = Clients()
+    known.listen(clients.listen("127.0.0.1", 0))
+    with socket.create_connection(known._listener.getsockname()):
+        (found,) = known.accept()
+    assert found.peer == "127.0.0.1"
+    known.close()
+
+
 def test_clients_come_are_heard_and_go(door: Door) -> None:
     """Before it listens there is nobody; of two, the one that says something is ready."""
     known = Clients()

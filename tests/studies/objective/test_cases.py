@@ -91,7 +91,8 @@ def test_a_table_has_compensated_rows_only_with_a_compensation() -> None:
 def test_a_case_adds_effects_and_wind_to_its_preload() -> None:
     low, high = PLANTS
     assert Case("x").plant(low, high).axes.ra.effects == low.axes.ra.effects
-    assert Case("x", high=True).plant(low, high).axes.ra.motor == high.axes.ra.motor
+    preloads = [Case("x", high=each).plant(low, high).axes.ra.friction for each in (False, True)]
+    assert preloads == [low.axes.ra.friction, high.axes.ra.friction] and preloads[0] != preloads[1]
     blown = Case("x", wind_m_s=3.0).plant(low, high).axes.ra.effects
     assert [each.name for each in blown[len(low.axes.ra.effects) :]] == ["wind_torque"]
 

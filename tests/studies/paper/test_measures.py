@@ -60,6 +60,7 @@ def test_E6_a_slow_swing_is_not_mistaken_for_offset_and_trend():
 def test_a_record_too_short_for_a_line_is_an_error():
     with pytest.raises(ValueError, match="cannot show lines"):
         strongest_line(np.ones(100), 0.01, 0.2)
+    assert strongest_line(np.ones(100), 0.9, 1.0).amplitude == pytest.approx(0.0, abs=1e-9)  # one period
 
 
 def test_standing_still_for_a_second_is_a_stall():

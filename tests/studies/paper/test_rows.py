@@ -61,6 +61,8 @@ def test_the_markdown_table_counts_what_is_met():
     assert "**1 of 2 rows are met**" in text and "2026-11-22" in text
     assert "**miss**" in text.split("## Missed")[1].split("## Met")[0]
     assert "**miss**" not in text.split("## Met")[1]
+    names, rule = text.split("## Missed\n")[1].split("\n")[:2]
+    assert names.count("|") == rule.count("|") == 8
 
 
 def test_eight_angles_and_three_seeds():
