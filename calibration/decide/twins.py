@@ -12,13 +12,14 @@ from calibration.arrays import Array
 from calibration.balances.candidate import Candidate, sine_columns
 from calibration.decide.drive import EXPECTED
 from calibration.decide.heldout import compare
+from calibration.decide.refine import Rest, refine
 from calibration.decide.scan import Contender, fit_with
-from calibration.decide.selection import Selection
+from calibration.decide.selection import Refusal, Selection
 from calibration.decide.thresholds import DOMINANT, LUCK_Z
 from calibration.finding import UNKNOWN
 from calibration.names import NAMES, gravity_imbalance
 from calibration.names.brake_drag import CHANGES
-from calibration.names.lines import CLOCKED, on_clock
+from calibration.names.lines import CLOCKED, cell, movable, on_clock
 from calibration.names.scene import Scene
 from calibration.statistics.regression import solve
 
@@ -130,6 +131,38 @@ def one_line(s: Selection, scene: Scene) -> Selection:
         why = f"the log does not tell its line from that of {s.candidates[place].say()}"
         return one_line(s.without(clock, why), scene)
     return s
+
+
+def beside_a_stage(s: Selection, scene: Scene) -> Selection:
+    """A stage's line and one of no stage next to it are a single one of no stage, where that leaves less.
+
+    Within a stage's resolution cell a line is the stage's first. What that leaves has a name by accident.
+    """
+    p = s.problem
+    for pair in product(range(len(s.chosen)), repeat=2):
+        one, other = (s.candidates[k] for k in pair)
+        if not _next_to(scene, one, other):
+            continue
+        others = s.keep([x for k, x in enumerate(s.chosen) if k not in pair])
+        rest = Rest(p.train, others.columns, others.after.residual, s.after.whitener)
+        rate = _rate(scene, one)
+        for c in movable(scene, rate, cell(rate, scene.span)):
+            found = fit_with(p, others.columns, refine(rest, c))
+            alone = s if found is None else others.keep([*others.chosen, replace(found, held=s.held)])
+            if alone.fitted_square < s.fitted_square:
+                why = "a single line of no stage leaves less"
+                alone.refused = [*s.refused, Refusal(f"{one.say()} and {other.say()}", why)]
+                return beside_a_stage(alone, scene)
+    return s
+
+
+def _next_to(scene: Scene, one: Candidate, other: Candidate) -> bool:
+    """Whether a stage's single line and one of no stage have a part of their main lobes in common."""
+    if {one.kind, other.kind} != {"line"} or one.order is None or other.order is None:
+        return False
+    if one.stage is None or one.harmonic is None or other.stage is not None:
+        return False
+    return abs(_rate(scene, one) - _rate(scene, other)) * scene.span < 2 * PARTED
 
 
 def _either(s: Selection, scene: Scene, place: int, clock: int) -> list[Contender]:

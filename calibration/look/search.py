@@ -12,7 +12,7 @@ from calibration.decide.rules import leave_out
 from calibration.decide.select import select
 from calibration.decide.selection import Selection
 from calibration.decide.thresholds import AS_MUCH, NOISE_SHARE, STILL_MISSING
-from calibration.decide.twins import one_line
+from calibration.decide.twins import beside_a_stage, one_line
 from calibration.names import NAMES
 from calibration.names.bearing_pass import free_lines
 from calibration.names.scene import Scene
@@ -87,7 +87,7 @@ def _search(view: View, problem: Problem) -> tuple[Selection, Scene]:
         if not any(c.name in searched for c in s.candidates) and k > 0:
             break
     assert s is not None
-    s = one_line(s, scene)
+    s = beside_a_stage(one_line(s, scene), scene)
     s = signed(leave_out(s, drive.within_bounds(view.resolved), drive.cancelled, drive.within_own_errors))
     # again: what was left out moves the sizes of the others
     s = signed(leave_out(s, drive.remainder, drive.worth_little))

@@ -15,6 +15,7 @@ from calibration.decide.select import select
 from calibration.decide.selection import Selection
 from calibration.decide.thresholds import FEWEST_BLOCKS, SAME_ORDER_SHARE
 from calibration.decide.tolerance import NEEDED, calibrated_numbers, changes, seen_speeds, telling
+from calibration.decide.twins import beside_a_stage
 from calibration.finding import UNKNOWN, Finding
 from calibration.look.axis_result import AxisResult
 from calibration.look.scene import scene_of_pair
@@ -111,7 +112,7 @@ def _pass(result: AxisResult, torque: Torque) -> tuple[Selection, Mask, Mask]:
         gone, stays = (s.candidates[k].say() for k in (pair[left], pair[1 - left]))
         result.refused += [("T", gone, f"cancels against {stays}")]
         s = without[left]
-    return s, whole, moving
+    return beside_a_stage(s, scene), whole, moving
 
 
 def _of_a_gear(c: Candidate, found: list[Finding]) -> bool:
