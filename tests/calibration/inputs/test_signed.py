@@ -28,6 +28,7 @@ def test_numbers_of_both_signs_show_their_word(bits: int, low: int, high: int, s
         np.arange(0.0, 65536.0, 50.0),  # a converter that is used from end to end
         np.concatenate([np.arange(100.0), np.full(3, 65535.0)]),  # readings that failed
         np.arange(1000.0),
+        np.concatenate([np.arange(100.0), 2.0**48 - np.arange(1.0, 101.0)]),  # longer than any word
         np.linspace(0.0, 65535.0, 100) + 0.25,  # no whole numbers
         np.concatenate([np.arange(100.0), np.arange(65436.0, 65536.0)]) + 0.25,  # likewise, at both ends
         np.array([1.0, 65535.0, 65534.0, 65533.0]),  # too few rows

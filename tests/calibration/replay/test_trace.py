@@ -181,6 +181,7 @@ def test_a_set_point_stays_in_force_where_rows_are_missing() -> None:
     assert np.array_equal(_held(x, present), [NAN, 1.0, 2.0, 2.0, 2.0, 3.0], equal_nan=True)
     x[1] = NAN
     assert np.isnan(_held(x, present)[:2]).all()
+    assert _held(np.array([4.0, 9.0]), np.array([True, False])).tolist() == [4.0, 4.0]
 
 
 @pytest.mark.parametrize(

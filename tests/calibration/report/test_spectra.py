@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from calibration.look.looked import Spectrum
-from calibration.report.plots import _over_orders, _over_periods
+from calibration.report.plots import _over_orders, _over_periods, plain_ticks
 from tests.calibration.report.drawn import PERIOD_S, effect, problem, selection
 
 N = 2000
@@ -87,3 +87,15 @@ def test_a_section_lasts_ten_rows_at_least(rows: int, drawn: int) -> None:
 def test_a_log_that_turns_its_slowest_stage_by_far_less_than_once_has_no_spectrum() -> None:
     at, amplitude = orders(np.cos(TURNS), {"rim": 0.01})
     assert len(at) == len(amplitude) == 0
+
+
+def test_an_axis_of_orders_has_plain_numbers_and_none_between_them() -> None:
+    from matplotlib.figure import Figure
+
+    ax = Figure().subplots()
+    ax.set_xscale("log")
+    ax.set_xlim(1.0, 20.0)
+    plain_ticks(ax)
+    assert [ax.xaxis.get_major_formatter()(x) for x in (0.5, 2.0, 10.0)] == ["0.5", "2", "10"]
+    assert {1.0, 2.0, 5.0, 10.0, 20.0} <= set(ax.xaxis.get_major_locator().tick_values(1.0, 20.0).round(6))
+    assert ax.xaxis.get_minor_formatter()(3.0) == ""
