@@ -62,6 +62,7 @@ def passed(
     monkeypatch.setattr(look, "select", select)
     monkeypatch.setattr(look, "volts_deny", lambda result, c, size: size == 2.0 and c.name in denied)
     monkeypatch.setattr(look, "cancelling", lambda s: next(cancelled, None))
+    monkeypatch.setattr(look, "beside_a_stage", lambda s, scene: s)
     s, whole, moving = look._pass(result, Some(problem=p))
     assert result.views == {"T": "view"}
     return result, s, (whole, moving), asked
