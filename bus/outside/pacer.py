@@ -154,9 +154,9 @@ class Punctuality:
         the first."""
         if not self.ticks:
             return float("nan")
-        each = sorted(self._bins)
-        reached = accumulate(self._bins[one] for one in each)
-        last = next(one for one, below in zip(each, reached, strict=True) if below >= share * self.ticks)
+        bins = sorted(self._bins)
+        reached = accumulate(self._bins[each] for each in bins)
+        last = next(each for each, ticks in zip(bins, reached, strict=True) if ticks >= share * self.ticks)
         return self.worst_s if last == _LAST else min((last + 1) * _BIN_S, self.worst_s)
 
     def restart(self) -> None:

@@ -98,8 +98,7 @@ def calibrated_numbers(
     standard error of the N m per ampere, which all share. `blocks` (p,): that carry each coefficient.
     """
     p = torque.problem
-    columns = [*LINEAR, *(f"log_{name}" for name in CURVED)]
-    places = dict(zip((*LINEAR, *CURVED), (p.place(c) for c in columns), strict=True))
+    places = {n: p.place(n) for n in LINEAR} | {n: p.place(f"log_{n}") for n in CURVED}
     apart = inflation(used[:, list(places.values())]) < INFLATION
     fitted = fitted_numbers(torque, after)
     numbers = {n: fitted[n] for n, good in zip(places, apart, strict=True) if good}

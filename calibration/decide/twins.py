@@ -148,8 +148,10 @@ def beside_a_stage(s: Selection, scene: Scene) -> Selection:
         rate = _rate(scene, one)
         for c in movable(scene, rate, cell(rate, scene.span)):
             found = fit_with(p, others.columns, refine(rest, c))
-            alone = s if found is None else others.keep([*others.chosen, replace(found, held=s.held)])
-            if alone.fitted_square < s.fitted_square:
+            alone = s if found is None else others.keep([*others.chosen, found])
+            if found is not None and alone.fitted_square < s.fitted_square:
+                held = compare(p, others.model, alone.model, alone.after.whitener)
+                alone.chosen = [*others.chosen, replace(found, held=held)]
                 why = "a single line of no stage leaves less"
                 alone.refused = [*s.refused, Refusal(f"{one.say()} and {other.say()}", why)]
                 return beside_a_stage(alone, scene)

@@ -53,6 +53,21 @@ def test_a_line_within_a_stages_cell_that_leaves_a_remainder_is_of_no_stage(true
     assert s.refused[-1].why == "a single line of no stage leaves less"
 
 
+def test_the_share_that_is_told_is_what_the_line_takes_beside_the_others() -> None:
+    """A wave of 1 beside one of 2 elsewhere: alone it takes all but the noise of what the other leaves."""
+    y = waves(r5_1=1.0, r8_0=2.0)
+    scene: Scene = drive(X, y=y, base=np.ones((ROWS, 1)), held=HELD)
+    own = {"stage": "gear", "harmonic": 1, "fixed": {}, "steps": (), "shape": None, "name": "gear_mesh"}
+    s = Selection.of(scene.problem)
+    for rate, more in ((8.0, {}), (STAGE, own), (5.5, {})):
+        found = fit_with(s.problem, s.columns, replace(movable(scene, rate, (rate, rate))[0], **more))
+        assert found is not None
+        s = s.keep([*s.chosen, found])
+    far, found = beside_a_stage(s, scene).chosen
+    assert far.candidate.order == 8.0 and found.held.share == pytest.approx(1.0, abs=0.01)
+    assert found.held.before == pytest.approx(np.sqrt(0.5), rel=0.05)
+
+
 @pytest.mark.parametrize(
     ("other", "stage"),
     [(5.5, {}), (5.7, {}), (5.5, {"stage": None}), (5.5, {"harmonic": None}), (5.5, {"order": None})],
