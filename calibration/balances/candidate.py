@@ -61,9 +61,19 @@ class Candidate:
         return self.width + self.searched
 
     @property
+    def at_order(self) -> float | None:
+        """Its order, cycles per turn, as refined."""
+        return self.fixed["order"][0] if "order" in self.fixed else self.order
+
+    @property
+    def at_frequency(self) -> float | None:
+        """Its frequency, Hz, as refined."""
+        return self.fixed["frequency"][0] if "frequency" in self.fixed else self.frequency
+
+    @property
     def repeats(self) -> float | None:
         """The order whose phase says where it is: of a line, or of a pulse once a turn."""
-        return self.order if self.kind == "line" or "width" in self.fixed else None
+        return self.at_order if self.kind == "line" or "width" in self.fixed else None
 
     @property
     def free(self) -> list[str]:

@@ -83,9 +83,9 @@ def order_beside(s: Selection, scene: Scene) -> Callable[[int, Candidate], list[
 
     def wrong_of(k: int, c: Candidate) -> list[Wrong]:
         whole_stage = c.harmonic is None and c.stage is not None
-        if k >= MOST_LINES or c.kind != "line" or not c.order or NAMES[c.name].scaled or whole_stage:
+        order = c.at_order
+        if k >= MOST_LINES or c.kind != "line" or not order or NAMES[c.name].scaled or whole_stage:
             return []
-        order, _ = c.fixed.get("order", (c.order, ""))
         label = s.problem.session if c.per_run else np.zeros_like(s.problem.session)
         # a negative order is the positive one the other way round
         rates = [r for r in (order / turn + CELLS / span, order / turn - CELLS / span) if r > 0]

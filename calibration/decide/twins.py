@@ -137,6 +137,7 @@ def beside_a_stage(s: Selection, scene: Scene) -> Selection:
     """A stage's line and one of no stage next to it are a single one of no stage, where that leaves less.
 
     Within a stage's resolution cell a line is the stage's first. What that leaves has a name by accident.
+    Its `neighbours` are looked at when it is picked, and reach no further than what is the stage's own.
     """
     p = s.problem
     for pair in product(range(len(s.chosen)), repeat=2):
@@ -185,5 +186,4 @@ def _beside(scene: Scene, place: Candidate, clock: Candidate) -> bool:
 
 def _rate(scene: Scene, place: Candidate) -> float:
     """Cycles per position unit of a line over the place, as refined."""
-    order, _ = place.fixed.get("order", (place.order or 0.0, ""))
-    return order / scene.turn
+    return (place.at_order or 0.0) / scene.turn

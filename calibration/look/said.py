@@ -84,8 +84,8 @@ def place_of(view: View, c: Candidate) -> tuple[Array, str]:
         turns = view.x[at] / (view.turn or 1.0) * c.repeats
         turns = turns % 1.0 if np.ptp(turns) > 1.0 else turns  # less than a turn is drawn in one piece
         return turns, f"phase of order {c.repeats:.5g}, turns"
-    if c.frequency is not None and "damping" not in c.fixed:  # a mode has no phase: the motion excites it
-        hertz, _ = c.fixed.get("frequency", (c.frequency, ""))  # as refined
+    hertz = c.at_frequency
+    if hertz is not None and "damping" not in c.fixed:  # a mode has no phase: the motion excites it
         return (view.t[at] * hertz) % 1.0, f"phase of {hertz:.5g} Hz, turns"
     if c.domain == "temperature" and "temperature" in view.columns:
         return view.columns["temperature"][at], "temperature, degC"

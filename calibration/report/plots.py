@@ -116,9 +116,9 @@ def spectrum_plot(selection: Selection, spectrum: Spectrum, title: str) -> str:
     plain_ticks(ax)
     known = {n: 1 / rate if spectrum.periods else rate for n, rate in spectrum.stages.items()}
     found = [c.candidate for c in selection.chosen if c.candidate.kind == "line"]
-    marks = [c.order for c in found if c.order]
+    marks = [order for c in found if (order := c.at_order)]
     if spectrum.periods:
-        marks = [1 / (h * c.frequency) for c in found if c.frequency for h in range(1, 9)]
+        marks = [1 / (h * f) for c in found if (f := c.at_frequency) for h in range(1, 9)]
     _mark(ax, {n: x for n, x in known.items() if low <= x <= high}, [x for x in marks if low <= x <= high])
     ax.set(xlabel=spectrum.label, ylabel=f"amplitude, {selection.problem.unit}")
     return finish(ax, title)
@@ -130,7 +130,7 @@ def _over_orders(selection: Selection, spectrum: Spectrum, e: Array) -> tuple[Ar
     turns, fitted = spectrum.turns[rows], int(rows.sum())
     if fitted < FEWEST_DRAWN:
         return np.zeros(0), np.zeros(0)
-    found = [c.candidate.order for c in selection.chosen if c.candidate.kind == "line" and c.candidate.order]
+    found = [c.at_order or 0.0 for c in selection.candidates if c.kind == "line"]
     top = max([*spectrum.stages.values(), *found], default=0.0) * 1.3 or 100.0
     top = min(top, 0.5 * fitted / (float(np.ptp(turns)) or 1.0))
     orders, power = order_spectrum(e[rows], turns, np.ones(fitted), FINER * top)

@@ -48,6 +48,7 @@ def test_a_line_within_a_stages_cell_that_leaves_a_remainder_is_of_no_stage(true
     assert [(c.name, c.stage) for c in s.candidates] == [("bearing_pass", None)]
     order, unit = s.candidates[0].fixed["order"]
     assert (order, unit) == (pytest.approx(true, abs=0.01), "1/m")
+    assert s.candidates[0].at_order == s.candidates[0].repeats == order
     assert np.hypot(*s.sizes(0)) == pytest.approx(1.0, rel=0.01)
     assert s.refused[-1].what.startswith("gear_mesh") and "bearing_pass" in s.refused[-1].what
     assert s.refused[-1].why == "a single line of no stage leaves less"
