@@ -38,6 +38,7 @@ class Candidate:
     twins: tuple[str, ...] = ()
     shape: Callable[[Array], Array] | None = None  # columns by the first len(steps) fixed parameters
     steps: tuple[float, ...] = ()  # a small step of each, for refinement and its interval
+    within: tuple[float, float] = (-np.inf, np.inf)  # bounds of the first of them
     open: bool = False  # rows leave a stretch of such a parameter open, as edges between them: its middle
     searched: int = 0  # parameters that were searched for beside the coefficients, and must pay
     per_run: bool = False  # a pair of columns per run: the phase is every run's own
@@ -90,9 +91,14 @@ class Candidate:
         """Parameters that are not refined: which of two motors, a time constant of a grid."""
         return {n: value for n, (value, _) in self.fixed.items() if n not in self.free}
 
+    def inside(self, p: Array) -> Array:
+        """Values of them, the first within its bounds."""
+        return np.concatenate([np.clip(p[:1], *self.within), p[1:]])
+
     def moved(self, p: Array) -> Candidate:
-        """The same at other values of them."""
+        """The same at other values of them, within bounds."""
         assert self.shape is not None
+        p = self.inside(p)
         there = {n: (float(v), self.fixed[n][1]) for n, v in zip(self.free, p, strict=True)}
         return replace(self, columns=self.shape(p), fixed={**self.fixed, **there})
 

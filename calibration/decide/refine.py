@@ -57,7 +57,7 @@ def refine(rest: Rest, c: Candidate) -> Candidate:
     for _ in range(limits.REFINE_ROUNDS):
         for k in range(len(at)):
             one = np.arange(len(at)) == k
-            trials = [at + d * one for d in np.linspace(-reach[k], reach[k], limits.REFINE_POINTS)]
+            trials = [c.inside(at + d * one) for d in np.linspace(-reach[k], reach[k], limits.REFINE_POINTS)]
             values = [rest.taken(shape(trial)) for trial in trials]
             if (most := max(values)) > best or (c.open and most == best):
                 ties = [x for x, v in zip(trials, values, strict=True) if v == most]

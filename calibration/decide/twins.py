@@ -19,7 +19,7 @@ from calibration.decide.thresholds import DOMINANT, LUCK_Z
 from calibration.finding import UNKNOWN
 from calibration.names import NAMES, gravity_imbalance
 from calibration.names.brake_drag import CHANGES
-from calibration.names.lines import CLOCKED, cell, movable, on_clock
+from calibration.names.lines import CLOCKED, on_clock
 from calibration.names.scene import Scene
 from calibration.statistics.regression import solve
 
@@ -136,8 +136,8 @@ def one_line(s: Selection, scene: Scene) -> Selection:
 def beside_a_stage(s: Selection, scene: Scene) -> Selection:
     """A stage's line and one of no stage next to it are a single one of no stage, where that leaves less.
 
-    Within a stage's resolution cell a line is the stage's first. What that leaves has a name by accident.
-    Its `neighbours` are looked at when it is picked, and reach no further than what is the stage's own.
+    A stage's line is picked before its neighbours, unless they gain clearly more. What it leaves then has a
+    name by accident.
     """
     p = s.problem
     for pair in product(range(len(s.chosen)), repeat=2):
@@ -146,8 +146,7 @@ def beside_a_stage(s: Selection, scene: Scene) -> Selection:
             continue
         others = s.keep([x for k, x in enumerate(s.chosen) if k not in pair])
         rest = Rest(p.train, others.columns, others.after.residual, s.after.whitener)
-        rate = _rate(scene, one)
-        for c in movable(scene, rate, cell(rate, scene.span)):
+        for c in one.neighbours:
             found = fit_with(p, others.columns, refine(rest, c))
             alone = s if found is None else others.keep([*others.chosen, found])
             if found is not None and alone.fitted_square < s.fitted_square:

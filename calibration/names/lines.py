@@ -194,10 +194,9 @@ def movable(s: Scene, rate: float, within: tuple[float, float]) -> list[Candidat
 
     def with_shape(c: Candidate) -> Candidate:
         def shape(p: Array) -> Array:
-            near = float(np.clip(p[0] / s.turn, *within))
-            return next(k.columns for k in over_place(s, c, near) if k.per_run == c.per_run)
+            return next(k.columns for k in over_place(s, c, float(p[0] / s.turn)) if k.per_run == c.per_run)
 
-        return replace(c, shape=shape)
+        return replace(c, shape=shape, within=(within[0] * s.turn, within[1] * s.turn))
 
     return [with_shape(c) for c in over_place(s, blank, rate)]
 

@@ -225,3 +225,18 @@ def test_of_onsets_in_a_held_out_stretch_the_one_that_leaves_least_is_taken(true
     assert settled(p, p.base, elsewhere, fit) is elsewhere
     none_held = logged(30.0, 60.0)
     assert settled(none_held, none_held.base, c, fit) is c
+
+
+@pytest.mark.parametrize(
+    ("true", "low", "high"), [(20.4, 20.0, 30.0), (29.7, 20.0, 30.0), (18.0, 20.0, 30.0)]
+)
+def test_a_search_that_meets_a_bound_goes_on_inside(true: float, low: float, high: float) -> None:
+    """Trials beyond it would all be the bound's own, and the finer ones about them, too."""
+
+    def pulse(p: np.ndarray) -> np.ndarray:
+        return np.exp(-(((T - p[0]) / 8.0) ** 2))[:, None]
+
+    c = tried(pulse, (1.7,), 25.0, within=(low, high))
+    found = refine(rest(pulse(np.array([true]))[:, 0] + 1e-3 * LUCK), c)
+    assert found.point[0] == pytest.approx(min(max(true, low), high), abs=0.2)
+    assert found.columns == pytest.approx(pulse(found.point))

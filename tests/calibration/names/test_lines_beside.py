@@ -35,9 +35,10 @@ def test_a_line_beside_a_stages_is_none_of_its_own(off: float, count: int, harmo
     assert len(near) == count
     for c in near:
         low, high = sorted(3.0 + np.sign(off) * part / travel for part in (0.05, 0.35))
-        assert c.shape is not None and c.apart == pytest.approx(rate, abs=0.1 / 20.0)
+        assert c.apart == pytest.approx(rate, abs=0.1 / 20.0)
         for asked, taken in ((0.0, low), (99.0, high)):
-            assert c.shape(np.array([asked])) == pytest.approx(pair(x, taken))
+            moved = c.moved(np.array([asked]))
+            assert moved.columns == pytest.approx(pair(x, taken)) and moved.at_order == pytest.approx(taken)
         assert c.name == "bearing_pass" and low < (c.apart or 0.0) < high
     told = [len(c.neighbours) for c in stage_lines(s, "gear_mesh")]
     assert told and set(told) == {len(beside_stage(s, s.view.rig.stages[0]))}
