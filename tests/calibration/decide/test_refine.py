@@ -227,16 +227,16 @@ def test_of_onsets_in_a_held_out_stretch_the_one_that_leaves_least_is_taken(true
     assert settled(none_held, none_held.base, c, fit) is c
 
 
-@pytest.mark.parametrize(
-    ("true", "low", "high"), [(20.4, 20.0, 30.0), (29.7, 20.0, 30.0), (18.0, 20.0, 30.0)]
-)
-def test_a_search_that_meets_a_bound_goes_on_inside(true: float, low: float, high: float) -> None:
-    """Trials beyond it would all be the bound's own, and the finer ones about them, too."""
+def test_what_lies_beyond_a_bound_does_not_draw_the_search() -> None:
+    """A pulse of 2 at 18 s, beyond the bound, and one of 1 at 27 s within it."""
 
     def pulse(p: np.ndarray) -> np.ndarray:
-        return np.exp(-(((T - p[0]) / 8.0) ** 2))[:, None]
+        return np.exp(-(((T - p[0]) / 1.5) ** 2))[:, None]
 
-    c = tried(pulse, (1.7,), 25.0, within=(low, high))
-    found = refine(rest(pulse(np.array([true]))[:, 0] + 1e-3 * LUCK), c)
-    assert found.point[0] == pytest.approx(min(max(true, low), high), abs=0.2)
-    assert found.columns == pytest.approx(pulse(found.point))
+    y = 2.0 * pulse(np.array([18.0]))[:, 0] + pulse(np.array([27.0]))[:, 0] + 1e-3 * LUCK
+    c = tried(pulse, (2.0,), 22.0)
+    assert refine(rest(y), c).point[0] == pytest.approx(18.0, abs=0.1)
+    held = refine(rest(y), replace(c, within=(20.0, 30.0)))
+    assert held.point[0] == pytest.approx(27.0, abs=0.1) and held.columns == pytest.approx(pulse(held.point))
+    edge = replace(c, within=(20.0, 24.0)).moved(np.array([18.0]))
+    assert edge.point.tolist() == [20.0] and edge.columns == pytest.approx(pulse(np.array([20.0])))
