@@ -237,6 +237,7 @@ def test_what_lies_beyond_a_bound_does_not_draw_the_search() -> None:
     c = tried(pulse, (2.0,), 22.0)
     assert refine(rest(y), c).point[0] == pytest.approx(18.0, abs=0.1)
     held = refine(rest(y), replace(c, within=(21.0, 30.0)))
-    assert held.point[0] == pytest.approx(27.0, abs=2.0 / 9) and held.columns == pytest.approx(pulse(held.point))
+    assert held.point[0] == pytest.approx(27.0, abs=2.0 / 9)
+    assert held.columns == pytest.approx(pulse(held.point))
     edge = replace(c, within=(20.0, 24.0)).moved(np.array([18.0]))
     assert edge.point.tolist() == [20.0] and edge.columns == pytest.approx(pulse(np.array([20.0])))
