@@ -74,10 +74,11 @@ def test_a_torques_line_has_others_within_its_cell_on_both_sides() -> None:
     # a fifth of a cell off, and no nearer than a twentieth or further than 0.35 of it
     assert sorted(off) == pytest.approx([-0.2 / s.span * s.turn, 0.2 / s.span * s.turn])
     for c, way in zip(one.neighbours, np.sign(off), strict=True):
-        assert c.shape is not None
         for asked, part in ((way * 1e6, 0.35), (-way * 1e6, 0.05)):
+            moved = c.moved(np.array([asked]))
             bound = ORDERS["shaft2"] + way * part / s.span * s.turn
-            assert c.shape(np.array([asked])) == pytest.approx(c.shape(np.array([bound])))
+            assert moved.at_order == pytest.approx(bound)
+            assert c.shape is not None and moved.columns == pytest.approx(c.shape(np.array([bound])))
 
 
 def test_an_order_moves_no_further_than_its_bounds() -> None:
@@ -86,8 +87,7 @@ def test_an_order_moves_no_further_than_its_bounds() -> None:
     within = (rate - 0.1, rate + 0.2)
     (c,) = movable(s, rate, within)
     assert c.fixed["order"][0] == pytest.approx(20.0)
-    assert c.shape is not None
-    far, bound = (c.shape(np.array([order])) for order in (40.0, within[1] * s.turn))
+    far, bound = (c.moved(np.array([order])).columns for order in (40.0, within[1] * s.turn))
     assert far == pytest.approx(bound)
-    assert c.shape(np.array([20.0])) == pytest.approx(c.columns)
-    assert c.shape(np.array([20.5])) != pytest.approx(c.columns)
+    assert c.moved(np.array([20.0])).columns == pytest.approx(c.columns)
+    assert c.moved(np.array([20.5])).columns != pytest.approx(c.columns)
