@@ -100,12 +100,11 @@ def _placed(s: Selection, places: list[int], view: View) -> dict[int, Array]:
     steps = [_step(view, row) for row in rows]
     for k, at in enumerate(places):
         others = np.column_stack([s.columns, *(x for j, x in enumerate(steps) if j != k)])[p.valid]
-        e = p.y[p.valid] - others @ solve(others, p.y[p.valid])
 
-        def gain(row: int, others: Array = others, e: Array = e) -> float:
+        def gain(row: int, others: Array = others) -> float:
             one = _step(view, row)[p.valid]
             one = one - others @ solve(others, one)
-            return float(one @ e) ** 2 / max(float(one @ one), 1e-300)
+            return float(one @ p.y[p.valid]) ** 2 / max(float(one @ one), 1e-300)
 
         first, last = max(at - BESIDE, 0), min(at + BESIDE, len(view.rows) - 1)
         low, high = int(view.rows[first]), int(view.rows[last])

@@ -155,7 +155,7 @@ def _fixed_lines(s: Scene) -> list[Candidate]:
     rows, clock = s.problem.train, s.view.clock[s.view.rows]
     span, period_s = float(np.ptp(clock)), s.problem.period_s
     top = min(0.5 / period_s, MOST_CYCLES / max(span, 1.0))
-    hertz, power = order_spectrum(np.where(rows, s.residual, 0.0), clock, rows.astype(float), top)
+    hertz, power = order_spectrum(s.residual, clock, rows.astype(float), top)
     power = np.where(hertz < max(SLOWEST_HZ, FEWEST_CYCLES / span), 0.0, power)
     out = []
     for f0 in peaks(hertz, power, ON_CLOCK, APART / span):

@@ -148,7 +148,7 @@ def _held(x: Array, present: Mask) -> Array:
     and so is what follows it."""
     at = np.where(present, np.arange(len(x)), -1)
     np.maximum.accumulate(at, out=at)
-    return np.where(at >= 0, x[np.maximum(at, 0)], np.nan)
+    return np.where(at >= 0, x[at], np.nan)
 
 
 def ticks(wanted: Array) -> Array:

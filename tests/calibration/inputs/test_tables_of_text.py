@@ -45,6 +45,7 @@ def refused(call: object, *more: object) -> str:
         ("# t, q\n# 3 runs\n1,2\n", (["0", "1"], 2, ",", 2)),
         ("# t\n1\n2\n", (["0"], 1, " ", 1)),
         ("Operator: N. N.\nt,q\n1,2\n3,4\n", (["t", "q"], 2, ",", 1)),
+        ("Operator: N. N.\nt,q\n1,2\n", (["t", "q"], 2, ",", 1)),
         ("a, b, c, d\nt,q\n1,2\n3,4\n5", (["t", "q"], 2, ",", 1)),  # the last row may be cut off
         ("a remark\nanother\n\nt,q\n\n1,2\n3,4\n", (["t", "q"], 5, ",", 3)),
         ("a remark\n1,2\n3,4\n", None),
