@@ -25,6 +25,7 @@ def sensors(seconds: float = LONG) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return t, x, RATIO * x + QUIET * np.random.default_rng(2).standard_normal(len(t))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("files", [1, 3])
 def test_slips_have_their_sizes_and_the_rest_is_as_if_there_were_none(tmp_path: Path, files: int) -> None:
     """At other times in each file: no file tells of another's slip."""
@@ -99,6 +100,7 @@ def test_iron_that_saturates_is_a_function_of_the_current(tmp_path: Path) -> Non
     assert data["error"]["torque"]["after"] < 0.3 * data["error"]["torque"]["before"]
 
 
+@pytest.mark.slow
 def test_what_hangs_on_a_load_is_a_function_of_it_and_not_of_place_and_way(tmp_path: Path) -> None:
     """Teeth that stiffen; the load is a weight that is lifted, and what it rubs."""
     t, x, y = sensors()
@@ -110,6 +112,7 @@ def test_what_hangs_on_a_load_is_a_function_of_it_and_not_of_place_and_way(tmp_p
     assert data["error"]["position"]["after"] < 0.3 * data["error"]["position"]["before"]
 
 
+@pytest.mark.slow
 def test_friction_grows_with_what_two_joints_weigh(tmp_path: Path) -> None:
     """The weight of the next joint is a load as well, though the offset shares what it makes."""
     t, x, u = motion(LONG)
@@ -124,6 +127,7 @@ def test_friction_grows_with_what_two_joints_weigh(tmp_path: Path) -> None:
     assert first["parameters"]["coefficient"]["value"] == pytest.approx(0.08, rel=0.1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("period", "harmonics", "width"), [(0.25, 3, 0.02), (0.8, 6, 0.06)])
 def test_a_dent_is_one_place_and_no_harmonics(
     tmp_path: Path, period: float, harmonics: int, width: float
@@ -157,6 +161,7 @@ def test_an_offset_that_walks_has_no_slips(tmp_path: Path, seed: int) -> None:
     assert "roller_slip" not in [e["name"] for e in data["effects"]]
 
 
+@pytest.mark.slow
 def test_a_declared_mass_is_a_load_as_well(tmp_path: Path) -> None:
     t, x, u = motion(LONG)
     load = MASS * rate(rate(x))
@@ -177,6 +182,7 @@ def turning(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.cumsum(v) * PERIOD, force
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("drags", [True, False])
 def test_an_offset_that_changes_is_no_brake_although_most_goes_one_way(tmp_path: Path, drags: bool) -> None:
     """From 44 s on; a brake turns over with the motion in the tenth that is left."""
@@ -202,6 +208,7 @@ def test_a_function_of_a_load_is_drawn_over_the_load(tmp_path: Path) -> None:
     assert values == pytest.approx(np.sin(3.0 * view.x[view.rows]), abs=0.05)
 
 
+@pytest.mark.slow
 def test_a_curve_over_the_place_stays_where_one_file_goes_on_alone(tmp_path: Path) -> None:
     """Of four files one goes 150 mm further, where the cable slackens: no other tells that."""
     t, x, u = motion(15.0)

@@ -159,6 +159,7 @@ def test_a_million_columns_are_refused_at_once(tmp_path: Path) -> None:
         assert monotonic() - begun_s < 10.0
 
 
+@pytest.mark.slow
 def test_a_column_of_next_to_nothing_is_answered(tmp_path: Path) -> None:
     """In units of nobody, 1e-299 V: gains so far from the declared ones that no float squares them."""
     t = np.arange(2000) / 1000

@@ -39,6 +39,7 @@ def test_what_the_steps_leave_has_no_name(tmp_path: Path) -> None:
     assert answer(tmp_path, (), 0.0)["effects"] == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [1038, 1039, 1042])
 def test_a_fault_that_comes_and_goes_at_one_place_is_unknown_there(tmp_path: Path, seed: int) -> None:
     """A brush that sticks in a sector, half of the time: most of it is below the floor of all rows."""
@@ -81,6 +82,7 @@ def test_steps_that_a_slow_motion_stays_on_are_in_the_floor(tmp_path: Path) -> N
     assert row["floor"] > 2 * averaged
 
 
+@pytest.mark.slow
 def test_nothing_is_judged_before_a_gap_has_been_crossed(tmp_path: Path) -> None:
     """A belt drive that begins every file somewhere in its gap; 7.9 floors were left by the first second."""
     order = Order("drive-single-play-belt-2-0", "single", "belt", ("play",), 2.0, seconds=40.0)

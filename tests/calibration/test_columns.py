@@ -116,6 +116,7 @@ def test_teeth_that_pass_quicker_than_the_filter_are_no_mains(tmp_path: Path) ->
     assert not any(e["frequency_Hz"] for e in data["effects"])
 
 
+@pytest.mark.slow
 def test_a_real_step_of_a_signed_effort_is_no_wrap(tmp_path: Path) -> None:
     """A drive that is switched off at -312 falls to 0: that is no counter of 360."""
     t, x, u = motion()
@@ -166,6 +167,7 @@ def test_a_rate_of_noise_alone_has_no_scale(tmp_path: Path) -> None:
     assert found is not None and found.scaled == ""
 
 
+@pytest.mark.slow
 def test_volts_that_a_wide_filter_leaves_too_few_rows_of_are_told(tmp_path: Path) -> None:
     t, x, u = motion(101.0)
     rig = FORCE.replace("effort", "current").replace("unit: N}\nresponse", "unit: A}\nresponse")
@@ -174,6 +176,7 @@ def test_volts_that_a_wide_filter_leaves_too_few_rows_of_are_told(tmp_path: Path
     assert FEW_VOLTS in data["reasons"] and "electrical" not in data["error"]
 
 
+@pytest.mark.slow
 def test_a_filter_that_takes_most_away_is_a_remark(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -8,6 +8,7 @@ import pytest
 from tests.calibration.test_drives import COULOMB, FORCE, answer, found, motion
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rise", [0.25, 0.4])
 def test_the_coulomb_part_alone_warms_up(tmp_path: Path, rise: float) -> None:
     tables = []

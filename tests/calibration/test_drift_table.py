@@ -36,6 +36,7 @@ def told(folder: Path, worm: float, gear: float, rate_hz: float = 1.0) -> Any:
     return json.loads((folder / "out" / "report.json").read_text())
 
 
+@pytest.mark.slow
 def test_a_worm_and_a_gear_of_a_table_are_named(tmp_path: Path) -> None:
     report = told(tmp_path, 8.0, 3.0)
     found = {e["stage"]: e["parameters"]["amplitude"]["value"] for e in report["effects"]}

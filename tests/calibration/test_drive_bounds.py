@@ -58,6 +58,7 @@ def test_a_part_of_an_effect_with_the_wrong_sign_is_left_out_of_it(second: float
     assert [n for n, _ in c.labels] == left and (beta > 0).all()
 
 
+@pytest.mark.slow
 def test_files_that_share_a_zero_through_a_counter_are_put_together(tmp_path: Path) -> None:
     tables = []
     for least in (0.3, -0.5, 0.9):  # rad: one file begins below the counter's edge
@@ -85,6 +86,7 @@ def test_a_gap_has_a_width_whichever_way_the_difference_was_taken(tmp_path: Path
     assert 0 < gap["low"] < 0.5 < gap["high"]
 
 
+@pytest.mark.slow
 def test_a_rate_of_another_scale_or_sign_is_told(tmp_path: Path) -> None:
     t, x, u = motion()
     rig = FORCE.replace("\nresponse", "\n  velocity: {column: v, unit: m/s}\nresponse")
@@ -129,6 +131,7 @@ def test_a_sound_rate_agrees_with_the_position_whatever_shakes_it(tmp_path: Path
     assert seen is not None and not seen.hardly
 
 
+@pytest.mark.slow
 def test_strokes_that_are_made_again_are_the_floor_of_a_friction_test(tmp_path: Path) -> None:
     rig = FORCE.replace("inertia, ", "")
     rng = np.random.default_rng(5)

@@ -103,6 +103,7 @@ def test_signed_numbers_written_unsigned_are_repaired(tmp_path: Path) -> None:
     assert mass(data) == pytest.approx(MASS, rel=0.03)
 
 
+@pytest.mark.slow
 def test_a_hole_in_the_table_changes_little(tmp_path: Path) -> None:
     t, x, u = motion()
     keep = (t < 9) | (t > 11)
@@ -113,6 +114,7 @@ def test_a_hole_in_the_table_changes_little(tmp_path: Path) -> None:
     assert any("1 gap, 2.01 s without rows" in r for r in b["reasons"])
 
 
+@pytest.mark.slow
 def test_a_square_wave_on_the_command_is_found_at_its_frequency(tmp_path: Path) -> None:
     t, x, u = motion()
     data = answer(tmp_path, FORCE, (t, x, u + 0.8 * np.sign(np.sin(2 * np.pi * 1.3 * t))))
@@ -120,6 +122,7 @@ def test_a_square_wave_on_the_command_is_found_at_its_frequency(tmp_path: Path) 
     assert data["effects"][0]["frequency_Hz"] == pytest.approx(1.3, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_a_late_effort_is_named_and_taken_out(tmp_path: Path) -> None:
     t, x, u = motion()
     late = np.interp(t - 0.012, t, u)
@@ -129,6 +132,7 @@ def test_a_late_effort_is_named_and_taken_out(tmp_path: Path) -> None:
     assert data["error"]["torque"]["after"] < 0.3 * data["error"]["torque"]["before"]
 
 
+@pytest.mark.slow
 def test_a_weight_is_gravity(tmp_path: Path) -> None:
     t, x, u = motion()
     angle = 5 * x
@@ -140,6 +144,7 @@ def test_a_weight_is_gravity(tmp_path: Path) -> None:
     assert amplitude["low"] < 6.0 < amplitude["high"]
 
 
+@pytest.mark.slow
 def test_warmth_from_file_to_file_is_no_preload(tmp_path: Path) -> None:
     t, x, u = motion(15.0)
     v = np.gradient(x, t)
@@ -260,6 +265,7 @@ def several(count: int = 3) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
     return out
 
 
+@pytest.mark.slow
 def test_a_gear_is_found_though_a_whole_file_is_held_out(tmp_path: Path) -> None:
     stage = FORCE + "stages:\n  - {name: screw, period: 0.05}\n"
     tables = [(t, x, u + 0.5 * np.cos(2 * np.pi * x / 0.05 + 1.0)) for t, x, u in several()]
@@ -268,6 +274,7 @@ def test_a_gear_is_found_though_a_whole_file_is_held_out(tmp_path: Path) -> None
     assert data["effects"][0]["parameters"]["amplitude"]["value"] == pytest.approx(0.5, rel=0.05)
 
 
+@pytest.mark.slow
 def test_a_gear_whose_zero_differs_from_file_to_file_is_found_too(tmp_path: Path) -> None:
     stage = FORCE + "stages:\n  - {name: screw, period: 0.05}\n"
     tables = [
@@ -277,6 +284,7 @@ def test_a_gear_whose_zero_differs_from_file_to_file_is_found_too(tmp_path: Path
     assert found(data)[:1] == ["gear_eccentricity"]
 
 
+@pytest.mark.slow
 def test_friction_in_waves_of_no_stage_is_found_with_their_length(tmp_path: Path) -> None:
     tables = [
         (
@@ -291,6 +299,7 @@ def test_friction_in_waves_of_no_stage_is_found_with_their_length(tmp_path: Path
     assert 1 / data["effects"][0]["order"] == pytest.approx(0.13, rel=0.02)
 
 
+@pytest.mark.slow
 def test_half_a_sample_of_delay_either_way_is_a_sound_loop(tmp_path: Path) -> None:
     for k, shift in enumerate((-0.5, 0.5)):
         tables = [(t, x, np.interp(t - shift * PERIOD, t, u)) for t, x, u in several()]

@@ -30,6 +30,7 @@ def relay(coulomb: float = 0.0, late_s: float = 0.0, seconds: float = 60.0) -> t
     return np.arange(n)[::EVERY] * STEP_S, x[::EVERY], held[::EVERY]
 
 
+@pytest.mark.slow
 def test_a_sound_drive_under_a_relay_lacks_nothing(tmp_path: Path) -> None:
     data = answer(tmp_path, NO_COULOMB, relay())
     assert data["effects"] == []
@@ -38,6 +39,7 @@ def test_a_sound_drive_under_a_relay_lacks_nothing(tmp_path: Path) -> None:
     assert "effort holds 2 values, the model has 3 terms: the acceleration is explained" in str(data)
 
 
+@pytest.mark.slow
 def test_friction_that_a_relay_overcomes_has_its_name_and_size(tmp_path: Path) -> None:
     data = answer(tmp_path, NO_COULOMB, relay(coulomb=2.0))
     assert [e["name"] for e in data["effects"]] == ["coulomb_change"]
@@ -45,6 +47,7 @@ def test_friction_that_a_relay_overcomes_has_its_name_and_size(tmp_path: Path) -
     assert found == pytest.approx(2.0 / MASS, rel=NEAR)
 
 
+@pytest.mark.slow
 def test_a_relay_that_acts_late_is_told_so(tmp_path: Path) -> None:
     data = answer(tmp_path, FORCE, relay(coulomb=2.0, late_s=0.03))
     assert [e["name"] for e in data["effects"]] == ["channel_delay"]

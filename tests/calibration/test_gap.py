@@ -20,6 +20,7 @@ def follower(x: np.ndarray, start: float) -> np.ndarray:
     return y
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [3, 4])
 def test_a_gap_is_found_although_files_begin_by_creeping_within_it(tmp_path: Path, seed: int) -> None:
     """Nine seconds at 0.2 mrad/s, each file at another place of the gap: a sixth of all rows."""

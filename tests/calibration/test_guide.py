@@ -216,6 +216,7 @@ def test_a_jump_is_no_air() -> None:
     assert _air(y, np.zeros(3000, dtype=np.int64), 20) == pytest.approx(0.5, rel=0.2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("turns", "found"), [((1.8, 1.6), True), ((1.8, 1.0), False)])
 def test_sections_tell_a_worm_together_where_one_is_too_short(
     tmp_path: Path, turns: tuple[float, float], found: bool

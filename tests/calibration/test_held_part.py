@@ -27,6 +27,7 @@ def loaded(levels_n: list[float]) -> tuple[np.ndarray, ...]:
     return t, x, f, u + 0.02 * np.random.default_rng(1).standard_normal(len(t))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("levels", [[1.0, -2.0, 4.0, -9.0, 20.0, -40.0], [20.0, -9.0, 1.0, 4.0, 15.0, -30.0]])
 def test_a_load_that_comes_last_is_fitted(tmp_path: Path, levels: list[float]) -> None:
     data = answer(tmp_path, LOADED, loaded(levels), header="t,x,f,u")
@@ -35,6 +36,7 @@ def test_a_load_that_comes_last_is_fitted(tmp_path: Path, levels: list[float]) -
     assert data["calibrated"]["inertia"]["value"] == pytest.approx(MASS, rel=0.03)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("reverse", [False, True])
 def test_what_is_held_out_is_told(tmp_path: Path, reverse: bool) -> None:
     """As long as the rest of the log in either case; the end of an even log, else not the end."""
@@ -47,6 +49,7 @@ def test_what_is_held_out_is_told(tmp_path: Path, reverse: bool) -> None:
     assert begin == pytest.approx(36.0, abs=1.0) if reverse else begin < 24.0
 
 
+@pytest.mark.slow
 def test_a_sweep_is_judged_where_the_rest_accelerates_as_much(tmp_path: Path) -> None:
     """Of one size at every frequency; a friction that nobody declared is then no drag from some time on."""
     t = np.arange(0, 40.0, PERIOD)
@@ -62,6 +65,7 @@ def test_a_sweep_is_judged_where_the_rest_accelerates_as_much(tmp_path: Path) ->
     assert [e["name"] for e in data["effects"]] == ["coulomb_change"]
 
 
+@pytest.mark.slow
 def test_what_is_applied_is_a_load_without_accelerations(tmp_path: Path) -> None:
     """A cylinder under pressure: its friction grows with it, in a rig file that declares no mass."""
     t, x, f, _ = loaded([1.0, 5.0, 3.0, 9.0, 7.0, 2.0])
@@ -73,6 +77,7 @@ def test_what_is_applied_is_a_load_without_accelerations(tmp_path: Path) -> None
     assert data["effects"][0]["parameters"]["coefficient"]["value"] == pytest.approx(PART, rel=0.05)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("clock", [False, True])
 def test_files_without_a_clock_have_no_time_among_them(tmp_path: Path, clock: bool) -> None:
     """Friction is another one from the third file on: a start among them only where somebody says when."""

@@ -37,6 +37,7 @@ def test_a_gap_of_the_coupling_must_take_most_of_what_the_encoders_show(after: f
     assert too_little(result, Finding("channel_delay", "K", "clock")) is None
 
 
+@pytest.mark.slow
 def test_an_effect_is_no_part_of_the_floor(tmp_path: Path) -> None:
     t, x, u = motion()
     slow = 0.5 * np.sin(2 * np.pi * t / 7.0)

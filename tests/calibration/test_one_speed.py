@@ -62,6 +62,7 @@ def test_files_there_and_back_have_one_speed(tmp_path: Path) -> None:
     assert speed == pytest.approx(1.0, rel=1e-3) and slip < 1e-3
 
 
+@pytest.mark.slow
 def test_at_two_speeds_each_of_the_two_is_alone(tmp_path: Path) -> None:
     t, x, e = steady(0.6)
     place = answer(tmp_path, TORQUE, (t, x, e + np.sin(2 * np.pi * 6 * x)))
@@ -70,6 +71,7 @@ def test_at_two_speeds_each_of_the_two_is_alone(tmp_path: Path) -> None:
     assert clock["effects"][0]["name"] == "command_disturbance"
 
 
+@pytest.mark.slow
 def test_a_speed_is_explained_by_lines_and_by_nothing_else(tmp_path: Path) -> None:
     t, x, e = steady(0.1)
     data = answer(tmp_path, SPEED, (t, x, 60.0 + e + 2 * np.sin(2 * np.pi * 6 * x)))
@@ -95,6 +97,7 @@ def test_a_sensor_that_is_late_by_many_rows_is_late_by_that(tmp_path: Path) -> N
     assert abs(one["parameters"]["delay"]["value"] - 0.14) < 0.005
 
 
+@pytest.mark.slow
 def test_a_rest_between_two_runs_is_no_lost_row(tmp_path: Path) -> None:
     t = np.concatenate([k * 12.0 + np.arange(0, 6, 0.02) for k in range(10)])
     x = np.sin(0.9 * t) + 0.4 * np.sin(2.3 * t + 1)
@@ -105,6 +108,7 @@ def test_a_rest_between_two_runs_is_no_lost_row(tmp_path: Path) -> None:
     assert found(data) == []
 
 
+@pytest.mark.slow
 def test_a_declared_line_is_none_of_the_clock_though_a_first_guess_lies_beside_its_order(
     tmp_path: Path,
 ) -> None:
@@ -118,6 +122,7 @@ def test_a_declared_line_is_none_of_the_clock_though_a_first_guess_lies_beside_i
     assert (first["name"], first["harmonic"]) == ("motor_cogging", 84)
 
 
+@pytest.mark.slow
 def test_a_short_file_beside_a_long_one_hides_no_frequency(tmp_path: Path) -> None:
     """Of 1.17 Hz a file of 1.3 s has a turn and a half."""
     tables = []

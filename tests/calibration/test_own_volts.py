@@ -22,6 +22,7 @@ def volts(tmp_path_factory: pytest.TempPathFactory) -> dict[str, float]:
     return dict(zip(names, s.after.beta.tolist(), strict=True))
 
 
+@pytest.mark.slow
 def test_a_leading_motor_that_is_dragged_has_its_own_constant(volts: dict[str, float]) -> None:
     motor = load(default_files()["low_preload"]).axes.ra.motor
     assert volts["torque_constant"] == pytest.approx(motor.torque_constant.si, rel=0.02)

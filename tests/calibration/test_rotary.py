@@ -34,6 +34,7 @@ def night(seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return t, np.round(x, 5), u
 
 
+@pytest.mark.slow
 def test_a_sound_one_has_neither(tmp_path: Path) -> None:
     assert found(answer(tmp_path, RIG, *[night(k) for k in range(3)])) == []
 

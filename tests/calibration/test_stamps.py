@@ -49,6 +49,7 @@ def told(folder: Path, path: Path) -> Any:
     return json.loads((folder / "out" / "report.json").read_text())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shake_s", [2e-4, 5e-4])
 def test_stamps_that_shake_are_named_and_put_right(tmp_path: Path, shake_s: float) -> None:
     report = told(tmp_path, log(tmp_path, "shake", shake_s))
@@ -61,6 +62,7 @@ def test_stamps_that_shake_are_named_and_put_right(tmp_path: Path, shake_s: floa
     assert report["error"]["torque"]["after"] < 1.1 * sound["error"]["torque"]["after"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("stamps", "shake_s"), [("follow", 5e-4), ("shake", 1e-5), ("round", 0.0)])
 def test_right_stamps_are_left_alone(tmp_path: Path, stamps: str, shake_s: float) -> None:
     path = log(tmp_path, stamps, shake_s)

@@ -52,6 +52,7 @@ def test_intervals_cover_on_coloured_noise() -> None:
     assert 106 <= inside <= 120  # 95 % of 120 is 114, three standard deviations are 7
 
 
+@pytest.mark.slow
 def test_the_surrogate_threshold_holds_its_level_on_coloured_noise() -> None:
     alarms = 0
     for seed in range(60):

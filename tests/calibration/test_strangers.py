@@ -65,6 +65,7 @@ def test_a_spring_is_a_function_of_the_place_and_no_loop(tmp_path: Path) -> None
     assert stiffness == pytest.approx(6.0, rel=0.05)
 
 
+@pytest.mark.slow
 def test_a_fixed_frequency_has_the_size_before_the_filter(tmp_path: Path) -> None:
     """The filter of 0.1 s leaves two thirds of 7.7 Hz."""
     t, x, u = motion(LONG)
@@ -75,6 +76,7 @@ def test_a_fixed_frequency_has_the_size_before_the_filter(tmp_path: Path) -> Non
     assert first["parameters"]["amplitude"]["value"] == pytest.approx(0.5, rel=0.03)
 
 
+@pytest.mark.slow
 def test_what_no_domain_holds_is_not_nothing(tmp_path: Path) -> None:
     """A slow random force, several times what the sensors leave."""
     t, x, u = motion(LONG)
@@ -108,6 +110,7 @@ def test_lost_motion_of_several_widths_is_no_gap(tmp_path: Path, widths: tuple[f
     assert names == ({("play", "reversal")} if len(widths) == 1 else {("unknown", "reversal")})
 
 
+@pytest.mark.slow
 def test_a_gap_that_is_thrown_from_flank_to_flank_is_play(tmp_path: Path) -> None:
     """The driven side has hardly any friction of its own: it leads while the drive brakes."""
     t, x, _ = motion(LONG)
@@ -139,6 +142,7 @@ def late_by_8_ms(folder: Path, noise_n: float) -> dict[str, Any]:
     return data
 
 
+@pytest.mark.slow
 def test_a_delay_below_the_floor_is_named_where_it_is_most_of_what_is_left(tmp_path: Path) -> None:
     """Under a force's noise of 0.3 N; the floor holds what steps of the position may hide, too."""
     data = late_by_8_ms(tmp_path, 0.3)
@@ -152,6 +156,7 @@ def test_a_small_delay_below_the_floor_is_not_named(tmp_path: Path) -> None:
     assert found(late_by_8_ms(tmp_path, 0.7)) == []
 
 
+@pytest.mark.slow
 def test_an_asymmetry_is_no_larger_than_the_friction_it_is_of(tmp_path: Path) -> None:
     """Beyond it friction would push; each of its two sizes has the declared one's bound."""
     t, x, u = motion(LONG)
@@ -165,6 +170,7 @@ def test_an_asymmetry_is_no_larger_than_the_friction_it_is_of(tmp_path: Path) ->
     assert data["verdict"] != "nothing"
 
 
+@pytest.mark.slow
 def test_a_gain_that_follows_the_place_is_a_function_of_it(tmp_path: Path) -> None:
     """A motor whose winding is worse at one end of its travel."""
     t, x, u = motion(LONG)
@@ -173,6 +179,7 @@ def test_a_gain_that_follows_the_place_is_a_function_of_it(tmp_path: Path) -> No
     assert data["error"]["torque"]["after"] < 0.5 * data["error"]["torque"]["before"]
 
 
+@pytest.mark.slow
 def test_a_line_keeps_its_phase_beside_an_unnamed_function(tmp_path: Path) -> None:
     """Three files, so that the line of the one that is held out has a phase nobody fitted."""
     tables = []
@@ -185,6 +192,7 @@ def test_a_line_keeps_its_phase_beside_an_unnamed_function(tmp_path: Path) -> No
     assert data["error"]["torque"]["after"] < 0.2 * data["error"]["torque"]["before"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("hertz", [1.487, 3.71, 5.43])
 def test_a_fixed_frequency_beside_a_multiple_of_the_motion_is_found(tmp_path: Path, hertz: float) -> None:
     """Motion that repeats itself every 8 s has a multiple every 0.12 Hz; most frequencies are near one."""

@@ -49,6 +49,7 @@ def test_a_brake_beside_a_walk_keeps_its_name_and_size(tmp_path: Path) -> None:
     assert top["parameters"]["torque"]["value"] == pytest.approx(0.8, rel=0.1)
 
 
+@pytest.mark.slow
 def test_a_still_offset_is_left_as_it_is(tmp_path: Path) -> None:
     data = answer(tmp_path, FORCE, *files(5, 0.0))
     assert not any("wanders" in r for r in data["reasons"]) and found(data) == []
@@ -64,6 +65,7 @@ def test_a_force_that_comes_and_goes_is_no_walk(tmp_path: Path) -> None:
     assert not any("wanders" in r for r in data["reasons"]) and found(data) != []
 
 
+@pytest.mark.slow
 def test_a_constant_of_every_files_own_is_real_and_has_no_name(tmp_path: Path) -> None:
     """A weight of 40 N more in the second file."""
     t, x, u = motion()

@@ -55,6 +55,7 @@ def sizes(found: Looked) -> dict[str, float]:
     return {name: p.value for name, p in found.balances[0].numbers.items()}
 
 
+@pytest.mark.slow
 def test_friction_turns_at_the_row_at_which_the_drive_does(tmp_path: Path) -> None:
     found = looked(tmp_path, cogging=0.0)
     assert not found.effects
@@ -62,6 +63,7 @@ def test_friction_turns_at_the_row_at_which_the_drive_does(tmp_path: Path) -> No
     assert sizes(found)["coulomb"] == pytest.approx(COULOMB, rel=0.02)
 
 
+@pytest.mark.slow
 def test_cogging_that_the_rotor_follows_has_its_size(tmp_path: Path) -> None:
     found = looked(tmp_path, cogging=0.02)
     cog: Finding = found.effects[0]
@@ -69,6 +71,7 @@ def test_cogging_that_the_rotor_follows_has_its_size(tmp_path: Path) -> None:
     assert cog.parameters["amplitude"].value == pytest.approx(0.02, rel=0.1)
 
 
+@pytest.mark.slow
 def test_cogging_at_one_speed_is_not_filtered_away(tmp_path: Path) -> None:
     """Six hertz, of which the filter that the position asks for leaves none: the current shows them."""
     found = looked(tmp_path, cogging=0.02, cogs=2, steady=20.0)

@@ -157,6 +157,7 @@ WORDS = st.sampled_from(
 ENDLESS = {"inf", "infinity"}
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(head=st.lists(st.one_of(ODD, WORDS), min_size=4, max_size=4), order=st.permutations(range(4)))
 def test_any_header_makes_a_draft_that_loads(tmp_path: Path, head: list[str], order: list[int]) -> None:

@@ -18,6 +18,7 @@ def pushed(*begins_s: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return t, x, force
 
 
+@pytest.mark.slow
 def test_one_push_is_told_and_spoils_no_number(tmp_path: Path) -> None:
     data = answer(tmp_path, FORCE, pushed(4.0))
     found = [e for e in data["effects"] if e["domain"] == "time"]
@@ -28,11 +29,13 @@ def test_one_push_is_told_and_spoils_no_number(tmp_path: Path) -> None:
     assert data["calibrated"]["coulomb"]["value"] == pytest.approx(COULOMB, rel=0.05)
 
 
+@pytest.mark.slow
 def test_what_comes_back_is_no_event(tmp_path: Path) -> None:
     data = answer(tmp_path, FORCE, pushed(*np.arange(2.0, 58.0, 3.7)))
     assert not any("left out" in e["note"] for e in data["effects"])
 
 
+@pytest.mark.slow
 def test_a_sound_motion_has_no_event(tmp_path: Path) -> None:
     data = answer(tmp_path, FORCE, pushed())
     assert data["verdict"] == "nothing"
@@ -47,6 +50,7 @@ def test_an_effect_that_names_the_stretch_is_no_event(tmp_path: Path) -> None:
     assert "left out" not in str(data)
 
 
+@pytest.mark.slow
 def test_a_push_in_each_of_two_files_is_told_of_both(tmp_path: Path) -> None:
     files = [pushed(4.0), pushed(17.0), pushed(), pushed()]
     data = answer(tmp_path, FORCE, *files)

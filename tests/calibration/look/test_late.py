@@ -10,6 +10,7 @@ from tests.calibration.test_drives import COULOMB, FORCE, MASS, PERIOD, VISCOUS,
 HZ, LATE_S = 1.0, 0.04
 
 
+@pytest.mark.slow
 def test_a_late_effort_along_one_sine_is_found_by_its_friction(tmp_path: Path) -> None:
     """A light arm, whose inertia is a hundredth of what the late friction looks like."""
     t = np.arange(0, 30.0, PERIOD)

@@ -32,6 +32,7 @@ def test_the_law_is_told_in_place_of_a_force(tmp_path: Path) -> None:
     assert float(told[2]) == pytest.approx(GAIN, rel=0.01)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("disturbed", "gain"), [(1.0, GAIN), (0.0, -GAIN)])
 def test_a_spring_or_another_force_is_none(tmp_path: Path, disturbed: float, gain: float) -> None:
     """A spring pulls the other way: the effort grows with the place."""
@@ -60,6 +61,7 @@ def test_a_page_has_no_empty_picture_or_table_where_nothing_was_looked_for(tmp_p
 REFERENCE = FORCE.replace("response:", "  reference: {column: r, unit: m}\nresponse:")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("forces", [True, False])
 def test_a_loop_with_a_moving_reference_is_told_where_forces_say_less(tmp_path: Path, forces: bool) -> None:
     """u = 80 (r - x) - 5 v holds exactly; what x answers is the drive of the rig, or somebody's hands."""
@@ -73,6 +75,7 @@ def test_a_loop_with_a_moving_reference_is_told_where_forces_say_less(tmp_path: 
         assert [float(x) for x in told.groups()] == [pytest.approx(80, rel=0.05), pytest.approx(5, rel=0.2)]
 
 
+@pytest.mark.slow
 def test_an_effort_without_its_sign_is_asked_for_it(tmp_path: Path) -> None:
     """A sensor that tells a size only; a weight that is larger than all friction has one sign, too."""
     t, x, u = motion()

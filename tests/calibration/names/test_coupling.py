@@ -31,6 +31,7 @@ def reported(folder: Path, t: np.ndarray, q1: np.ndarray, q2: np.ndarray, torque
     return answer(folder, ARM, (t, q1, torque, q2), header="t,x,u,q2")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [1, 2])
 def test_a_coupled_inertia_has_no_name_and_is_told(tmp_path: Path, seed: int) -> None:
     """Both joints of a planar arm (Craig, Introduction to Robotics, chapter 6)."""

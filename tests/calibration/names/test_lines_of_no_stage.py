@@ -37,6 +37,7 @@ def told(folder: Path, stages: str, order: float) -> dict[str, Any]:
     return first
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("stages", "order", "name", "stage"),
     [
@@ -64,18 +65,21 @@ def test_a_whole_multiple_of_a_stage_is_its_harmonic_first(
         assert first["harmonic"] == {20.0: 20, 14.0: 2, 9.0: 9}[order]
 
 
+@pytest.mark.slow
 def test_once_per_turn_of_a_motor_its_own_force_comes_first(tmp_path: Path) -> None:
     first = told(tmp_path, MOTOR, 1.0)
     assert (first["name"], first["stage"], first["harmonic"]) == ("motor_cogging", "motor", 1)
     assert first["equivalent"] == ["gravity_imbalance"]
 
 
+@pytest.mark.slow
 def test_a_stage_that_was_guessed_is_a_gear_or_a_motor(tmp_path: Path) -> None:
     first = told(tmp_path, "  - {name: shaft, period: 360, harmonics: 12, kind: unknown}", 6.0)
     assert (first["name"], first["stage"], first["harmonic"]) == ("gear_eccentricity", "shaft", 6)
     assert set(first["equivalent"]) == {"gear_mesh", "motor_cogging"}
 
 
+@pytest.mark.slow
 def test_a_speed_as_the_response_has_no_weight(tmp_path: Path) -> None:
     t = np.arange(0.0, SECONDS, 1 / RATE_HZ)
     x = 50.0 * t

@@ -24,6 +24,7 @@ def sweep(seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return t, x + 2e-6 * rng.standard_normal(len(t)), force
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [1, 2])
 def test_a_mode_in_a_sweep_has_its_frequency_and_mass(tmp_path: Path, seed: int) -> None:
     data = answer(tmp_path, FORCE, *(sweep(10 * seed + k) for k in range(3)))

@@ -7,6 +7,7 @@ import pytest
 from tests.calibration.test_drives import COULOMB, FORCE, VISCOUS, answer, motion
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("term", "size", "unit"), [("coulomb", COULOMB, "N"), ("viscous", VISCOUS, "N s/m")])
 def test_a_term_of_friction_that_nobody_declared_has_its_name_and_size(
     tmp_path: Path, term: str, size: float, unit: str

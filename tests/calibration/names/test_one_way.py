@@ -18,6 +18,7 @@ estimate: [viscous, coulomb, offset]
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("both", [True, False])
 def test_a_brake_needs_both_directions(tmp_path: Path, both: bool) -> None:
     t = np.arange(0.0, SECONDS, 1 / RATE_HZ)
@@ -35,6 +36,7 @@ def test_a_brake_needs_both_directions(tmp_path: Path, both: bool) -> None:
     assert first["parameters"]["start"]["value"] == pytest.approx(BEGINS_S, abs=1.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("both", [True, False])
 def test_so_does_friction_that_warms_up(tmp_path: Path, both: bool) -> None:
     t = np.arange(0.0, SECONDS, 1 / RATE_HZ)

@@ -37,6 +37,7 @@ def swept(reach_turns: float) -> tuple[np.ndarray, np.ndarray]:
     return t, 180.0 * reach_turns * sway
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("width_deg", "reach_turns"), [(12.0, 0.6), (25.0, 0.6), (12.0, 1.3)])
 def test_a_bump_between_two_sensors_is_no_runout(
     tmp_path: Path, width_deg: float, reach_turns: float
@@ -60,6 +61,7 @@ def test_a_runout_over_whole_turns_has_its_harmonics(tmp_path: Path) -> None:
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("reach_turns", [0.5, 0.9])
 def test_a_weight_comes_before_harmonics_of_its_joint(tmp_path: Path, reach_turns: float) -> None:
     t, x = swept(reach_turns)
@@ -72,6 +74,7 @@ def test_a_weight_comes_before_harmonics_of_its_joint(tmp_path: Path, reach_turn
     assert first["parameters"]["amplitude"]["value"] == pytest.approx(10.0, rel=0.1)
 
 
+@pytest.mark.slow
 def test_a_weight_over_a_quarter_turn_is_no_pair_of_harmonics(tmp_path: Path) -> None:
     """Three and four cycles a turn are less than one over the stroke: together they are any curve."""
     t, x = swept(0.25)

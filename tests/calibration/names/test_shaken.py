@@ -28,6 +28,7 @@ def shaken(seconds: float, seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarra
     return t, np.round(at / 1e-5) * 1e-5, force + 0.05 * noise
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [1, 2])
 def test_a_disturbance_that_moves_the_drive_is_found(tmp_path: Path, seed: int) -> None:
     """Motion that nearly repeats itself has a multiple near any frequency."""

@@ -34,6 +34,7 @@ def drive(s: Selection) -> Looked:
     return Looked(title="a drive", balances=[b, quiet])
 
 
+@pytest.mark.slow
 def test_what_shows_an_effect_is_drawn_and_what_shows_none_is_not(found: Selection) -> None:
     drawn = pictures(drive(found), Replay())
     assert [p["image"][:22] for p in drawn] == ["data:image/png;base64,"] * 4
@@ -43,6 +44,7 @@ def test_what_shows_an_effect_is_drawn_and_what_shows_none_is_not(found: Selecti
     assert pictures(Looked(title="too short"), Replay()) == []
 
 
+@pytest.mark.slow
 def test_a_line_with_a_phase_of_every_sections_own_is_drawn_for_one(
     found: Selection, monkeypatch: pytest.MonkeyPatch
 ) -> None:
