@@ -164,7 +164,6 @@ def view_of(records: list[Run], rig: Rig, response: Response, limits: Limits = U
     file = np.concatenate([np.full(len(p["t"]), k) for k, p in enumerate(parts)]).astype(np.int64)
     columns = {k: np.concatenate([p[k] for p in parts]) for k in parts[0]}
     t, ok, gap = columns.pop("t"), columns.pop("ok") > 0, columns.pop("gap") > 0
-    label = columns.pop("run", np.zeros(len(t)))
     starts = np.array([r.start_s or 0.0 for r in records])
     heavy = "inertia" in (*rig.estimate, *rig.constants)
     dynamic = response.is_force and (heavy or response.channel == "acceleration")
@@ -188,7 +187,7 @@ def view_of(records: list[Run], rig: Rig, response: Response, limits: Limits = U
         clock=t + starts[file],
         file=file,
         segment=np.cumsum(fresh),
-        run=file,
+        run=file,  # or shorter, by turning points
         columns=columns,
         ok=ok & ~gap,
         rows=np.zeros(0, dtype=np.int64),
@@ -200,7 +199,9 @@ def view_of(records: list[Run], rig: Rig, response: Response, limits: Limits = U
         seldom={k: round(share) for k in columns if (share := rows_per_reading(records, k)) > SELDOM},
     )
     _motion(view, max(sigma, told))  # whether it moves is seen through no narrower filter
-    view.run = _runs(view, label)
+    if rig.runs.get("by") == "turning_points":
+        least = float(rig.runs.get("minimum_travel", 0.0))
+        view.run = np.cumsum(turning_points(view.x, file, least)).astype(np.int64)
     choose_rows(view)
     return view
 
@@ -213,13 +214,10 @@ def _regular(record: Run, period: float) -> dict[str, Array]:
     right = np.clip(np.searchsorted(t, grid), 1, len(t) - 1)
     wide = t[right] - t[right - 1] > max(record.gap_s, GAP * period)
     inside = np.minimum(np.abs(t[right] - grid), np.abs(t[right - 1] - grid)) > 0.51 * period
-    nearest = np.clip(np.rint(np.interp(grid, t, np.arange(len(t)))).astype(int), 0, len(t) - 1)
     ok = np.ones(len(grid), dtype=bool)
     for name, x in record.columns.items():
         good = np.isfinite(x)
-        if name == "run":
-            out[name] = x[nearest]
-        elif name != "t":
+        if name != "t":
             out[name] = np.interp(grid, t[good], x[good])
             for a, b in pieces(good.astype(np.int64)):
                 if not good[a] and b - a > SHORT:
@@ -284,17 +282,6 @@ def fade(view: View, part: float) -> None:
     """Let the direction fade below `part` of the usual top speed."""
     view.standstill = part * view.top
     view.direction = np.tanh(view.speed / (view.standstill or 1.0))
-
-
-def _runs(view: View, label: Array) -> NDArray[np.int64]:
-    by = view.rig.runs.get("by")
-    if by == "turning_points":
-        change = turning_points(view.x, view.file, float(view.rig.runs.get("minimum_travel", 0.0)))
-    elif by == "column":
-        change = np.concatenate([[False], (np.diff(label) != 0) | (np.diff(view.file) != 0)])
-    else:
-        return view.file
-    return np.asarray(np.cumsum(change), dtype=np.int64)
 
 
 def choose_rows(view: View) -> None:

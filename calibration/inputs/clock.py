@@ -1,4 +1,5 @@
-"""The clock of a table: parts that start again, rows whose stamp leaps back, and what is refused."""
+"""The clock of a table: parts that start again or have a label of their own, rows whose stamp leaps back, and
+what is refused."""
 
 import itertools
 from bisect import bisect_right
@@ -13,21 +14,40 @@ from calibration.errors import CalibrationInputError
 FROM_THE_FIRST = 3.0  # steps of a clock from its first stamp, where it starts again. ASSUMPTION
 # of the rows, that may stand out of order: more is another clock's, or another order of the rows. ASSUMPTION
 STRAY = 0.01
+LONG_GAP = 100.0  # rows, longer than a filter reaches. ASSUMPTION
 
 
 def parts_of_clock(raw: dict[str, Array], t: Array) -> list[tuple[dict[str, Array], int]]:
     """A table by its clock `t` (n,), each part with the number of its rows that were left out.
 
-    Stray rows are left out. Without any it has parts where the clock starts again from its first stamp.
+    Stray rows are left out, and those without any number. Without stray ones it has parts where the clock
+    starts again from its first stamp. A part whose clock stands was never written.
     """
+    empty = np.all([np.isnan(x) for x in raw.values()], axis=0)
+    if empty.any() and not empty.all():
+        (one, left), *others = parts_of_clock({name: x[~empty] for name, x in raw.items()}, t[~empty])
+        return [(one, left + int(empty.sum())), *others]
     kept = in_order(t)
     if len(kept) < len(t):
         return [({name: x[kept] for name, x in raw.items()}, len(t) - len(kept))]
     back = np.flatnonzero(np.diff(t) < 0) + 1
     if not len(back) or np.any(np.abs(t[back] - t[0]) > FROM_THE_FIRST * np.median(np.abs(np.diff(t)))):
         return [(raw, 0)]
-    edges = itertools.pairwise([0, *back, len(t)])
-    return [({name: x[a:b] for name, x in raw.items()}, 0) for a, b in edges]
+    edges = list(itertools.pairwise([0, *back, len(t)]))
+    moving = [(a, b) for a, b in edges if t[a] < t[b - 1]] or edges
+    return [({name: x[a:b] for name, x in raw.items()}, 0) for a, b in moving]
+
+
+def parts_of_label(raw: dict[str, Array], label: Array, t: Array | None) -> list[dict[str, Array]]:
+    """A table's parts over which `label` (n,) keeps its value, or has none.
+
+    A long gap of the clock `t` (n,), where there is one, parts rows as well, and sensors keep their zeros.
+    """
+    new = (np.diff(label) != 0) & ~(np.isnan(label[1:]) & np.isnan(label[:-1]))
+    if t is not None and len(t) > 1:
+        new &= ~(np.diff(t) > LONG_GAP * np.nanmedian(np.diff(t)))
+    edges = itertools.pairwise([0, *(np.flatnonzero(new) + 1), len(label)])
+    return [{name: x[a:b] for name, x in raw.items()} for a, b in edges]
 
 
 def in_order(t: Array) -> NDArray[np.int64]:

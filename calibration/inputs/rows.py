@@ -18,9 +18,9 @@ def lost_rows(run: Run) -> None:
     steps = np.diff(run.columns["t"]) / run.period_s
     whole = np.round(steps)
     regular = np.abs(steps - whole) < limits.OFF_BEAT
-    if len(steps) < limits.FEWEST_ROWS or regular.mean() < limits.REGULAR:
+    if len(steps) < limits.FEWEST_ROWS or regular.mean() < limits.REGULAR or not _moved_on(run, whole):
         return
-    at = regular & (whole >= 2) & _moved_on(run, whole)
+    at = regular & (whole >= 2)
     rows = int((whole[at] - 1).sum())
     if at.sum() >= limits.LOST_PLACES and rows > limits.LOST_SHARE * run.rows:
         note = f"{rows} rows are missing in {int(at.sum())} places"
@@ -60,17 +60,15 @@ def rows_without_a_stamp(run: Run) -> None:
     run.repairs.append(Repair("lost", "all", count, float(count), note))
 
 
-def _moved_on(run: Run, whole: Array) -> Mask:
+def _moved_on(run: Run, whole: Array) -> bool:
     """Steps (n - 1,) of `whole` periods between rows of one run, over which the drive moved on as the clock
     did. Over a stamp that jumps it moves by one row, over a rest not at all."""
-    x, label = run.columns["position"], run.columns.get("run")
-    same = np.ones(len(whole), dtype=bool) if label is None else np.diff(label) == 0
-    step = np.nan_to_num(np.abs(np.diff(x)))
+    step = np.nan_to_num(np.abs(np.diff(run.columns["position"])))
     usual = np.maximum(np.roll(step, 1), np.roll(step, -1))
-    wide = same & (whole >= 2)
+    wide = whole >= 2
     expected = float(np.sum((usual * whole)[wide]))
     moved = float(np.sum(np.minimum(step, usual * whole)[wide]))
-    return same & (moved > limits.MOVED_ON * expected or expected == 0.0)
+    return moved > limits.MOVED_ON * expected or expected == 0.0
 
 
 def repeated_rows(run: Run, rig: Rig) -> None:

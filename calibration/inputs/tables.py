@@ -9,7 +9,7 @@ import numpy as np
 
 from calibration.arrays import Array, Mask
 from calibration.errors import CalibrationInputError
-from calibration.inputs.clock import check_clock, parts_of_clock
+from calibration.inputs.clock import check_clock, parts_of_clock, parts_of_label
 from calibration.inputs.counters import count_wraps, read_signed, unwrap
 from calibration.inputs.declaration import Column, Rig
 from calibration.inputs.matlab import read_matlab
@@ -25,7 +25,9 @@ READERS = {".mat": read_matlab, ".npz": read_matlab, **RECORDINGS}
 
 
 def read_table(path: Path, rig: Rig, text: str | None = None) -> list[Run]:
-    """The file's runs: one, or one per cell of a .mat file; `text` is its content if it was read."""
+    """The file's runs: one, or one per cell of a .mat file, start of its clock, or label.
+
+    `text` is its content if it was read."""
     # of a long table the stamps of what is explained are kept: its noise stays white, its steps are steps
     told = [r.channel for r in rig.responses]
     first = sorted(rig.columns, key=lambda c: (c not in told, c != "position"))
@@ -47,6 +49,9 @@ def read_table(path: Path, rig: Rig, text: str | None = None) -> list[Run]:
             found = [one]
         else:
             found = [table.read(wanted, stamps)]
+    if "column" in rig.runs:
+        label, clock = str(rig.runs["column"]), "" if stamp is None else str(stamp.column)
+        found = [part for raw in found for part in parts_of_label(raw, raw[label], raw.get(clock))]
     parts = [(raw, 0) for raw in found]
     if stamp is not None:
         parts = [part for raw in found for part in parts_of_clock(raw, raw[str(stamp.column)])]
@@ -54,7 +59,7 @@ def read_table(path: Path, rig: Rig, text: str | None = None) -> list[Run]:
     runs = [_run(path, rig, raw, name, logged) for (raw, _), name in zip(parts, names, strict=True)]
     for run, (_, stray) in zip(runs, parts, strict=True):
         if stray:
-            note = f"stamps that leap back, or ahead of their neighbours: {stray} rows are left out"
+            note = f"{stray} rows are left out: stamps that leap back or ahead, or nothing in the row"
             run.repairs.append(Repair("leap", "time", stray, float(stray), note))
     return runs
 
@@ -95,8 +100,6 @@ def _run(path: Path, rig: Rig, raw: dict[str, Array], name: str, logged: dict[st
         if where.delay_s and channel != "time":
             counted.setdefault(channel, columns[channel])
             columns[channel] = np.interp(columns["t"] + where.delay_s, columns["t"], columns[channel])
-    if "column" in rig.runs:
-        columns["run"] = raw[str(rig.runs["column"])]
     start_s = _start(path, rig, float(t[0]))
     run = Run(name, path, name, columns, raw, {"rig": rig.name}, logged=counted, start_s=start_s)
     run.period_s = float(np.median(np.diff(columns["t"]))) if run.rows > 1 else 1.0

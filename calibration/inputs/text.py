@@ -19,6 +19,7 @@ NAME_WORDS = 2  # words of a column's name: itself and its unit. A remark has mo
 MOST_COLUMNS = 4096  # Ten times the widest table known. ASSUMPTION.
 COMMAS = ": decimal commas? write points"
 STAMP = ": a stamp? the column time takes 'format: iso'"
+UNIT = re.compile(r"\[.*\]|\(.*\)|-?")  # of a row of units below the names
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?inf(inity)?", re.ASCII | re.IGNORECASE)
 """What a field may hold: Python's `float` also takes 1_0 and digits of other scripts."""
 
@@ -123,14 +124,14 @@ def heading(path: Path, text: str, names: tuple[str, ...] = (), delimiter: str |
     """Where a table's rows begin, and what its columns are called; JSON as a table."""
     if is_json(text):
         text, delimiter = table_of_json(path, text), "\t"
-    lines = text.splitlines()
+    lines = _unterminated(text.splitlines())
     rows = [k for k, line in enumerate(lines) if line.strip() and not line.startswith(("#", "%"))]
     if not rows:
         raise CalibrationInputError(path, "has no data rows", len(lines) or None)
     skip = _behind_remarks(lines, rows[0], delimiter)
     mark = delimiter or _mark(lines[skip])
     if mark == " ":  # aligned columns are parted by any number of blanks
-        lines = [" ".join(line.split()) for line in lines]
+        lines = [" ".join(_told(line.split(), len(names))) for line in lines]
     check_width(path, lines[skip].count(mark) + 1, skip + 1)
     fields, first, said = split(lines[skip], mark), skip + 1, list[str]()
     if names or all(f and plain(f) is not None for f in fields):
@@ -152,6 +153,19 @@ def _unended(line: str, mark: str, width: int) -> str:
     """A row of `width` fields, the last of which is empty, without that one."""
     bare = line.rstrip(" ")
     return bare.removesuffix(mark) if bare.count(mark) == width - 1 else line
+
+
+def _unterminated(lines: list[str]) -> list[str]:
+    """Lines without the `;` that ends every row of commas."""
+    rows = [line.rstrip(BLANK) for line in lines if line.strip() and not line.startswith(("#", "%"))]
+    if not all("," in row and row.find(";") == len(row) - 1 for row in rows[1:] or rows):
+        return lines  # the first may be a header row
+    return [line.rstrip(BLANK).removesuffix(";") for line in lines]
+
+
+def _told(fields: list[str], named: int) -> list[str]:
+    """Fields of a row of which the first `named` have names (0: all), without words behind them."""
+    return fields[:named] if 0 < named < len(fields) and plain(fields[named]) is None else fields
 
 
 def _is_blank(line: str, mark: str) -> bool:
@@ -186,8 +200,9 @@ def _behind_remarks(lines: list[str], skip: int, delimiter: str | None) -> int:
 
 def _commented(above: list[str], mark: str, count: int) -> list[str]:
     """Names in the last comment above rows of numbers, where it has one for each of `count` columns."""
-    last = next((line for line in reversed(above) if line.startswith(("#", "%"))), "")
-    names = [name.rstrip(",;") for name in split(last.lstrip("#% "), mark)]
+    remarks = (line for line in reversed(above) if line.startswith(("#", "%")))
+    some = ([name.rstrip(",;") for name in split(line.lstrip("#% "), mark)] for line in remarks)
+    names = next((row for row in some if not all(UNIT.fullmatch(name) for name in row)), [])
     words = all(name and plain(name) is None and len(name.split()) <= NAME_WORDS for name in names)
     return names if len(names) == count > 1 and words and len(set(names)) == count else []
 

@@ -218,14 +218,9 @@ def test_a_noisy_position_does_not_tell_a_slow_motion() -> None:
     assert v.slow == pytest.approx(expected)
 
 
-def test_runs_are_files_columns_or_turning_points() -> None:
-    label = np.repeat([1.0, 2.0, 5.0], 1000)
-    plain = view_of([record(run=label)], rig(), FORCE)
-    assert not plain.run.any() and "run" not in plain.columns
-    by_column = view_of(
-        [record(run=label), record(500, "b.csv", run=np.full(500, 5.0))], rig(runs={"by": "column"}), FORCE
-    )
-    assert np.bincount(by_column.run).tolist() == [1000, 1000, 1000, 500]
+def test_runs_are_files_or_turning_points() -> None:
+    plain = view_of([record(), record(500, "b.csv")], rig(), FORCE)
+    assert np.bincount(plain.run).tolist() == [3000, 500]
     turning = view_of([record()], rig(runs={"by": "turning_points", "minimum_travel": 0.5}), FORCE)
     edges = np.flatnonzero(np.diff(turning.run)) * PERIOD_S
     assert edges == pytest.approx(np.arange(1.25, 30.0, 2.5), abs=0.05)

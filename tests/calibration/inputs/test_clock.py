@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from calibration.errors import CalibrationInputError
-from calibration.inputs.clock import check_clock, in_order, parts_of_clock
+from calibration.inputs.clock import check_clock, in_order, parts_of_clock, parts_of_label
 
 
 def parts(*t: float, **columns: np.ndarray) -> list[tuple[list[float], int]]:
@@ -17,6 +17,7 @@ def parts(*t: float, **columns: np.ndarray) -> list[tuple[list[float], int]]:
     return [(raw["t"].tolist(), left) for raw, left in parts_of_clock({"t": clock, **columns}, clock)]
 
 
+NAN = float("nan")
 EVEN = [float(k) for k in range(200)]
 
 
@@ -33,6 +34,7 @@ EVEN = [float(k) for k in range(200)]
         ([0, 1, 1, 2], []),  # a stamp that stays does not go back
         ([0, 1, 2, 0, 1, 0, 1], [3, 5]),
         ([0, 1, 2, 0, 1, 9, 8], []),  # one start and one that is none
+        ([0, 0, 0], []),
         ([0, 1, 2], []),
         ([0], []),
     ],
@@ -41,6 +43,38 @@ def test_a_part_begins_where_the_clock_starts_again(t: list[float], edges: list[
     ends = [0, *edges, len(t)]
     told = [([float(x) for x in t[a:b]], 0) for a, b in pairwise(ends)]
     assert parts(*t) == told
+
+
+def test_a_row_of_nothing_is_left_out_and_one_without_a_stamp_is_told() -> None:
+    """The first row, and rows that were never written behind the last one."""
+    assert parts(NAN, *EVEN, 0.0, 0.0, 0.0) == [(EVEN, 1)]
+    assert parts(NAN, 0.0, NAN, 1.0) == [([0.0, 1.0], 2)]
+    ((kept, left),) = parts(NAN, 0.0, 1.0, 2.0, x=np.ones(4))
+    assert len(kept) == 4 and left == 0
+    assert len(parts(NAN, NAN)[0][0]) == 2
+
+
+def test_a_part_whose_clock_stands_was_never_written() -> None:
+    assert parts(0, 1, 2, 3, 0, 0, 0) == [([0, 1, 2, 3], 0)]
+    assert parts(0, 1, 2, 0, 1, 0, 0) == [([0, 1, 2], 0), ([0, 1], 0)]
+
+
+@pytest.mark.parametrize(
+    ("label", "sizes"),
+    [([1, 1, 2, 2, 2, 1], [2, 3, 1]), ([5, 5, 5], [3]), ([NAN, NAN, 1, 1, NAN], [2, 2, 1]), ([7], [1])],
+)
+def test_a_label_parts_every_column(label: list[float], sizes: list[int]) -> None:
+    x = np.arange(len(label), dtype=float)
+    found = parts_of_label({"x": x, "label": np.array(label)}, np.array(label), None)
+    assert [len(part["x"]) for part in found] == sizes
+    assert np.concatenate([part["x"] for part in found]).tolist() == x.tolist()
+
+
+def test_a_long_gap_of_the_clock_leaves_the_sensors_their_zeros() -> None:
+    label, x = np.repeat([1.0, 2.0, 3.0], 20), np.arange(60.0)
+    for gap, sizes in ((100, [20, 20, 20]), (101, [20, 40])):
+        t = np.cumsum(np.where(x == 40, gap, 1.0))
+        assert [len(part["x"]) for part in parts_of_label({"x": x}, label, t)] == sizes
 
 
 def test_rows_out_of_order_are_left_out_of_every_column() -> None:

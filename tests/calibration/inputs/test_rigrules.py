@@ -120,7 +120,7 @@ CASES: list[tuple[dict[str, Any], dict[str, Any], str]] = [
         "'stribeck_speed' is missing; a dip from rest",
     ),
     (ONE, {"runs": {"by": "column"}}, "runs.by: 'column' needs runs.column, the column's name"),
-    (ONE, {"runs": {"column": "k"}}, "runs.column: is used with by: column only"),
+    (ONE, {"runs": {"by": "none", "column": "k"}}, "runs.column: is used with by: column, or alone"),
     (ONE, {"runs": {"minimum_travel": 1}}, "runs.minimum_travel: is used with by: turning_points only"),
     (
         ONE,

@@ -120,8 +120,10 @@ def test_a_number_of_the_file_and_of_the_time_stands_for_a_column() -> None:
 def test_a_column_parts_the_runs_and_a_clock_that_starts_again_does() -> None:
     labelled = declared()
     labelled.runs["column"] = "run"
-    (r,) = read("t,q,u,run\n0,1,1,7\n1,2,2,8\n", labelled)
-    assert r.columns["run"].tolist() == [7.0, 8.0]
+    runs = read("t,q,u,run\n0,1,1,7\n1,2,2,7\n2,9,2,8\n3,8,2,8\n", labelled)
+    assert [(r.name, r.columns["position"].tolist()) for r in runs] == [
+        ("night one{1}", [1.0, 2.0]), ("night one{2}", [9.0, 8.0])
+    ]  # fmt: skip
     two = read(rows([1, 2, 3, 4, 5, 6], t=[0, 1, 2, 0, 1, 2]))
     assert [(r.name, r.columns["position"].tolist()) for r in two] == [
         ("night one{1}", [1.0, 2.0, 3.0]), ("night one{2}", [4.0, 5.0, 6.0])
@@ -132,7 +134,7 @@ def test_stray_rows_are_told() -> None:
     t = [float(k) for k in range(200)]
     t[50] = 3.0
     (r,) = read(rows(t, t=t))
-    note = "stamps that leap back, or ahead of their neighbours: 1 rows are left out"
+    note = "1 rows are left out: stamps that leap back or ahead, or nothing in the row"
     assert r.repairs == [Repair("leap", "time", 1, 1.0, note)] and r.rows == 199
 
 

@@ -44,6 +44,10 @@ def refused(call: object, *more: object) -> str:
         ("# 3, q\n1,2\n", (["0", "1"], 1, ",", 1)),
         ("# t, q\n# 3 runs\n1,2\n", (["0", "1"], 2, ",", 2)),
         ("# t\n1\n2\n", (["0"], 1, " ", 1)),
+        ("% t (8Hz),q\n% [s],(deg)\n1,2\n", (["t (8Hz)", "q"], 2, ",", 1)),  # a row of units
+        ("% Date:,today\n% t,q\n1,2;\n3,4; \n", (["t", "q"], 2, ",", 1)),  # rows that end in `;`
+        ("t,q\n1,2;\n3,4;\n", (["t", "q"], 1, ",", 0)),
+        ("t,q\n1,2;3\n", (["t", "q"], 1, ",", 0)),
         ("Operator: N. N.\nt,q\n1,2\n3,4\n", (["t", "q"], 2, ",", 1)),
         ("Operator: N. N.\nt,q\n1,2\n", (["t", "q"], 2, ",", 1)),
         ("a, b, c, d\nt,q\n1,2\n3,4\n5", (["t", "q"], 2, ",", 1)),  # the last row may be cut off
@@ -56,6 +60,14 @@ def test_a_table_begins_where_its_names_do(text: str, found: tuple[list[str], in
         assert refused(heading, PATH, text) == "x.csv:2: 1 fields, 2 names"
     else:
         assert at(text) == found
+
+
+def test_words_behind_the_fields_that_have_names_are_passed_over() -> None:
+    """As a monitor's log has alarms behind some values; a number there is a column without a name."""
+    text = "axis:x 2.5 HIHI MAJOR\naxis:u 3\n"
+    table = heading(PATH, text, ("name", "value"), " ")
+    assert table.lines == ["axis:x 2.5", "axis:u 3"]
+    assert refused(heading, PATH, "axis:x 2.5 7\n", ("name", "value"), " ").startswith("x.csv:1: 3 fields")
 
 
 def test_names_and_a_delimiter_that_are_given_come_first() -> None:
