@@ -185,7 +185,8 @@ def _behind_remarks(lines: list[str], skip: int, delimiter: str | None) -> int:
         return line.split() if mark == " " else split(line, mark)
 
     rows = [k for k in range(skip, len(lines)) if lines[k].strip()]
-    row = lines[rows[-2 if len(rows) > 3 else -1]]  # the last one may be cut off
+    # below a remark and a header row; the last of several may be cut off
+    row = lines[(rows[2:] or rows[-1:])[-2:][0]]
     mark = delimiter or _mark(row)
     width = len(fields(row))
     if width < 2 or len(fields(lines[skip])) == width or all(plain(f) is None for f in fields(row)):

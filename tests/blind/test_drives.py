@@ -16,6 +16,7 @@ from tests.blind.drives.order import Order
 from tests.blind.drives.score import score
 
 
+@pytest.mark.slow
 def test_same_seed_same_bytes_and_the_seal_is_the_hash_of_the_truth(tmp_path: Path) -> None:
     order = Order("x", "single", "servo", ("gravity_imbalance",), 5.0, "heavy", "spikes", 5.0)
     for name in ("one", "two"):
@@ -42,6 +43,7 @@ def test_every_name_is_drawn_in_its_families_and_keys_are_unique() -> None:
         assert {o.names[0] for o in orders if o.kind == kind and o.cell == "single"} == set(names)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "name"), [("mount", "worm_error"), ("telescope", "supply_sag")])
 def test_drives_of_files_of_their_own_are_sealed_the_same_way(tmp_path: Path, kind: str, name: str) -> None:
     order = Order("x", "single", kind, (name,), 5.0, seconds=1200.0)

@@ -30,6 +30,7 @@ def breaks() -> None:
     raise RuntimeError("no idea")
 
 
+@pytest.mark.slow
 def test_seal_find_open_score_and_resume(tmp_path: Path) -> None:
     CALLS.clear()
     command = f"{__name__}:says_nothing"

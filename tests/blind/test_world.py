@@ -170,6 +170,7 @@ def test_same_seed_same_bytes_and_the_seal_is_the_hash_of_the_truth(tmp_path: Pa
     assert json.loads(truth)["effects"][0]["reached"] > 1.8
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("spoil", sorted({o.spoil for o in cells.tables()}))
 def test_rig_files_are_read_and_tell_nothing_that_is_hidden(tmp_path: Path, spoil: str) -> None:
     order = next(o for o in cells.tables() if o.spoil == spoil)

@@ -241,6 +241,7 @@ def logs(folder: Path, model: PlantModel) -> list[Path]:
     return paths
 
 
+@pytest.mark.slow
 def test_a_smooth_torque_over_the_angle_comes_back_as_an_unknown_within_its_uncertainty(
     tmp_path: Path,
 ) -> None:

@@ -29,6 +29,7 @@ def test_a_leading_motor_that_is_dragged_has_its_own_constant(volts: dict[str, f
     assert volts["emf_of_a_dragged_leader"] == pytest.approx(motor.torque_constant.si, rel=0.5)
 
 
+@pytest.mark.slow
 def test_the_counter_register_waits_and_the_converter_rounds_down(volts: dict[str, float]) -> None:
     assert 0.3 < volts["held_counter_register"] < 1.2  # every second effort of the loop is in the log
     counts = volts["conversion_offset"] / volts["resistance"]

@@ -53,6 +53,7 @@ publish("kit", made.wire)
 """
 
 
+@pytest.mark.slow
 def test_the_kit_runs_them_with_its_option(tmp_path: Path) -> None:
     done = run_kit(KIT, tmp_path, "--can-canopen")
     assert f"{len(CANOPEN)} passed" in done.stdout, done.stdout + done.stderr

@@ -374,6 +374,7 @@ publish("kit", wire)
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "value", "code"), [("health", 4, 0), ("answer_ns", 12 * MS, 1)])
 def test_kit_and_command_end_alike(name: str, value: int, code: int, tmp_path: Path) -> None:
     wire = Wire(EventQueue())

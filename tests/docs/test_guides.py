@@ -78,6 +78,7 @@ def test_the_first_guides_have_pictures(page: str) -> None:
     assert "![" in text_of(page), f"{GUIDES / page}: no picture"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("page", ["fmu.md", "recordings.md"])
 def test_a_page_on_other_tools_does_as_it_says(tmp_path: Path, page: str) -> None:
     pytest.importorskip("fmpy" if page == "fmu.md" else "mcap", reason="an extra, see the page")

@@ -8,6 +8,8 @@ import sys
 from contextlib import redirect_stdout
 from typing import Any
 
+import pytest
+
 from tests.docs.guides import GUIDES, run, steps, write_files
 from tests.doors.process import ROOT
 
@@ -41,6 +43,7 @@ def test_every_cell_prints_what_it_shows(monkeypatch: Any) -> None:
     matplotlib.pyplot.close(names["figure"])
 
 
+@pytest.mark.slow
 def test_the_fixture_of_the_page_is_that_of_the_mark(tmp_path: Any) -> None:
     assert write_files("from-python.md", tmp_path) == ["test_mine.py"]
     (tmp_path / "test_other.py").write_text("def test_fresh(lab):\n    assert lab.now_s == 0.0\n")
@@ -52,6 +55,7 @@ def test_the_fixture_of_the_page_is_that_of_the_mark(tmp_path: Any) -> None:
     assert done.returncode == 0 and "2 passed" in done.stdout, done.stdout + done.stderr
 
 
+@pytest.mark.slow
 def test_five_lines_are_five(tmp_path: Any) -> None:
     step = next(steps("from-python.md"))
     assert len([line for line in step.code.splitlines() if line.strip()]) == 5

@@ -56,6 +56,7 @@ def night(shutter: bool) -> tuple[list[tuple[int, Frame, str]], list[tuple[float
     return frames, truth, looks
 
 
+@pytest.mark.slow
 def test_an_open_shutter_changes_nothing_on_bus_or_plant() -> None:
     frames, truth, none = night(shutter=False)
     again, true_again, looks = night(shutter=True)

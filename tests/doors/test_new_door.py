@@ -5,6 +5,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).parents[2]
 FILE = """
 from pathlib import Path
@@ -51,6 +53,7 @@ def schmidt(folder: Path, *words: str) -> str:
     return done.stdout
 
 
+@pytest.mark.slow
 def test_a_door_is_a_file_and_a_row(tmp_path: Path) -> None:
     (tmp_path / "timefile.py").write_text(FILE)
     assert "--timefile FILE" in schmidt(tmp_path, "serve", "-h")

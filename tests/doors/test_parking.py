@@ -93,6 +93,7 @@ def test_an_axis_that_does_not_hear_is_named_and_the_other_parks(served: LiveNet
     assert off_park(served)[0] < NEAR_ARCSEC
 
 
+@pytest.mark.slow
 def test_an_axis_that_does_not_come_is_named_after_its_time(served: LiveNetwork) -> None:
     served.start_fault("pwm_stuck", axis="ra")
     words = park(served, lambda _: None)

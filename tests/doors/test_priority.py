@@ -70,6 +70,7 @@ def test_a_system_without_the_class_runs_on(monkeypatch: pytest.MonkeyPatch) -> 
         assert "among other programs" in said
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("words", "expected"),
     [

@@ -19,6 +19,7 @@ def exposed(rig: Rig, number: int = 1, lit: bool = True) -> None:
     read_out(camera)
 
 
+@pytest.mark.slow
 def test_a_session_is_a_star_and_what_a_client_sent_meanwhile(tmp_path: Path) -> None:
     log = tmp_path / "guiding.txt"
     log.write_text("of an earlier evening")

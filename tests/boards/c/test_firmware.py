@@ -82,6 +82,7 @@ def test_both_heed_the_encoder_boards_limits(parameter: int, way: int) -> None:
     assert duel.sides[1].state()["mode"] == AxisMode.RATE
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("duel", ["lab:2", "final:4"])
 def test_both_boards_say_the_same(duel: str) -> None:
     name, _, seed = duel.partition(":")

@@ -82,6 +82,7 @@ def test_a_board_without_supply_is_silent_and_boots_afresh() -> None:
     assert len(board.ends) == 240
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ppm", [-9000.0, 0.0, 9000.0])
 def test_B9_a_board_knows_the_time_from_its_own_timer_only(ppm: float) -> None:
     queue = EventQueue()

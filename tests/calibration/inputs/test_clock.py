@@ -110,6 +110,7 @@ def test_a_run_of_rows_ahead_costs_more_rows_than_it_goes_back() -> None:
     assert in_order(t).tolist() == list(range(200))
 
 
+@pytest.mark.slow
 @settings(max_examples=50, deadline=None)
 @given(st.lists(st.floats(-10, 10), min_size=150, max_size=160), st.integers(0, 149), st.floats(-99, 99))
 def test_what_is_kept_never_goes_back_and_is_no_shorter_than_without_the_stray(

@@ -215,6 +215,7 @@ def test_what_a_name_says(name: str, channel: str, unit: str, scale: float, aske
     assert found.scale == pytest.approx(scale)
 
 
+@pytest.mark.slow
 def test_a_strangers_first_try(tmp_path: Path) -> None:
     """`calibrate` without a rig points to the draft, and runs on what that prints."""
     log = write(tmp_path / "my.csv", ["time [s]", "angle [rad]", "speed [rad/s]", "torque [N m]"])

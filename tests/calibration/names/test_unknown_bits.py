@@ -14,6 +14,7 @@ from plant.units import ARCSEC
 from tests.calibration.logs import write_log
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("bit", "held"), [(13, 0), (13, 1), (9, 0), (17, 1)])
 def test_a_bit_that_never_changes_is_named_and_every_row_put_right(
     tmp_path: Path, bit: int, held: int

@@ -35,6 +35,7 @@ def test_discovery_finds_the_server_and_its_devices(live: AlpacaLive) -> None:
     assert management.description(live.address)["ServerName"] == "schmidt"
 
 
+@pytest.mark.slow
 def test_connect_slew_read_back_abort_park(live: AlpacaLive) -> None:
     telescope = Telescope(live.address, 0)
     telescope.Disconnect()

@@ -30,6 +30,7 @@ def exposed(camera: Camera, seconds: float, light: bool = True) -> np.ndarray:
     return np.array(pixels).reshape(camera.ImageArrayInfo.Dimension1, -1).T
 
 
+@pytest.mark.slow
 def test_a_frame_comes_in_both_formats(skies: AlpacaLive) -> None:
     camera = Camera(skies.address, 1)
     camera.Connected = True
@@ -50,6 +51,7 @@ def test_a_frame_comes_in_both_formats(skies: AlpacaLive) -> None:
     assert dark.max() < counts.max() - 300
 
 
+@pytest.mark.slow
 def test_what_the_standard_refuses_and_ends(skies: AlpacaLive) -> None:
     camera = Camera(skies.address, 0)
     camera.Connected = True

@@ -84,6 +84,7 @@ def test_the_dome_turns_opens_stops_and_says_what_it_cannot(dome: Dome) -> None:
         _ = dome.Altitude
 
 
+@pytest.mark.slow
 def test_a_slaved_dome_follows_a_slew_and_refuses_to_be_sent_elsewhere(final: AlpacaLive, dome: Dome) -> None:
     assert not dome.Slaved
     star = final.up(hour_angle_h=-1.0, dec_deg=40.0)

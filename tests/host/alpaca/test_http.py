@@ -186,6 +186,7 @@ def test_an_answer_does_not_wait_for_a_delayed_acknowledge(live: AlpacaLive) -> 
     assert sorted(times)[15] < 0.030
 
 
+@pytest.mark.slow
 @settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
 def test_anything_is_answered_and_nothing_is_an_internal_error(live: AlpacaLive, data: st.DataObject) -> None:

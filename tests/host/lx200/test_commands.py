@@ -272,6 +272,7 @@ def test_a_slew_over_the_ground_stands_there_or_says_no(door: Door, client: Clie
     assert client.ask("GW") == "PN1"
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("rotctl") is None, reason="rotctl is not installed (libhamlib-utils)")
 def test_hamlibs_rotctl_slews(door: Door, client: Client) -> None:
     """Its Meade rotator, number 1801, as Debian packages it; it reads back in low precision only."""
@@ -294,6 +295,7 @@ def test_hamlibs_rotctl_slews(door: Door, client: Client) -> None:
     assert azimuth == pytest.approx(120, abs=0.02) and altitude == pytest.approx(55.5, abs=0.02), said
 
 
+@pytest.mark.slow
 def test_keys_pulses_and_rates(door: Door, client: Client) -> None:
     assert goto(client, *coordinates(door, 0.0, 29.0)) == "0"
     client.wait()

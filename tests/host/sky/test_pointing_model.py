@@ -80,6 +80,7 @@ def test_intervals_hold_the_declared_numbers_as_often_as_they_say() -> None:
     assert np.mean(held) > 0.90
 
 
+@pytest.mark.slow
 def test_a_mount_that_lacks_nothing_else_gets_the_six_terms_of_geometry() -> None:
     mount = errors(hour_angle_index=50, declination_index=-30, polar_azimuth=60, collimation=20)
     more = [len(fit(sightings(mount, 40, seed), MOUNT, LATITUDE).terms) - 6 for seed in range(4000, 4040)]

@@ -56,6 +56,7 @@ def test_the_async_desk_awaits(rig: Rig) -> None:
     assert desk.now.tracking
 
 
+@pytest.mark.slow
 def test_what_one_asks_survives_what_another_begins_on_any_tick(rig: Rig) -> None:
     """Tracking begins some ticks after its command, and a stop ends it; answers asked for then come."""
     axis = rig.telescope.client.devices[0]

@@ -97,6 +97,7 @@ def test_pulses_of_an_axis_follow_one_another_and_make_the_sum(tracking: Rig) ->
     assert boards is not None and max(map(abs, boards)) < OVERSHOOT_ARCSEC
 
 
+@pytest.mark.slow
 def test_a_trim_of_the_rate_goes_on_under_a_pulse(tracking: Rig) -> None:
     board, rates = tracking.network.board("AXIS_DEC"), []
     for trim in (0.0, 0.1):

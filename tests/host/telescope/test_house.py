@@ -19,6 +19,7 @@ def house(tmp_path: Path) -> Iterator[Rig]:
     made.host.close()
 
 
+@pytest.mark.slow
 def test_H7_the_dome_turns_opens_and_stops_by_the_host(house: Rig) -> None:
     telescope = house.telescope
     assert telescope.house.boards(DOME) == ["DOME"]

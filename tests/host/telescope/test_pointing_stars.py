@@ -38,6 +38,7 @@ def test_every_sync_keeps_its_star(rig: Rig) -> None:
         rig.do(lambda t: t.drive.fit_model())
 
 
+@pytest.mark.slow
 def test_a_telescope_with_the_model_of_its_stars_looks_at_the_star(rig: Rig) -> None:
     rig.run(lambda t: t.drive.power_on())
     rig.pc.observatory.stars = tuple(sightings(MountErrors(), 40, 21))

@@ -27,6 +27,7 @@ def true_hour_angle_rad(rig: Rig) -> float:
     return float(rig.network.plant.ra.truth(rig.network.queue.now_ns)[0])
 
 
+@pytest.mark.slow
 def test_H2_power_up_slew_track_park(rig: Rig) -> None:
     assert rig.telescope.snapshot.parked and not rig.telescope.snapshot.powered
     with pytest.raises(Refused) as refused:
@@ -74,6 +75,7 @@ def test_altitude_and_azimuth_are_reached_and_held(rig: Rig) -> None:
     assert abs(place.azimuth_rad - azimuth) * math.cos(altitude) < 10 * ARCSEC
 
 
+@pytest.mark.slow
 def test_abort_goes_on_tracking_and_the_stop_does_not(rig: Rig) -> None:
     rig.do(lambda t: t.drive.goto(rig.up(dec_deg=10.0), wake=True))
     rig.advance(4.0)
@@ -114,6 +116,7 @@ def test_keys_move_over_the_sky_while_tracking(rig: Rig, direction: str, axis: i
     assert rig.telescope.snapshot.activity == "tracking"
 
 
+@pytest.mark.slow
 def test_pulses_shift_the_target_by_rate_and_time(rig: Rig) -> None:
     rig.run(lambda t: t.drive.goto(rig.up(hour_angle_h=0.0, dec_deg=29.0), wake=True))
     rig.advance(20.0)
@@ -156,6 +159,7 @@ def test_the_moon_is_slower_than_the_stars(rig: Rig) -> None:
     assert (pointing(rig)[0] - start[0]) / ARCSEC == pytest.approx((15.041 - 14.685) * elapsed, abs=3.0)
 
 
+@pytest.mark.slow
 def test_tracking_ends_at_the_horizon_limit(rig: Rig) -> None:
     rig.run(lambda t: t.drive.goto(rig.up(hour_angle_h=3.0, dec_deg=10.0), wake=True))
     place = rig.pc.observatory.observed(
@@ -186,6 +190,7 @@ def test_health_names_every_board_and_a_dead_one(rig: Rig) -> None:
     assert not states[Device.DISPLAY].alive and states[Device.FOCUS].alive
 
 
+@pytest.mark.slow
 def test_a_dead_encoder_board_ends_tracking_and_says_so(rig: Rig) -> None:
     rig.run(lambda t: t.drive.goto(rig.up(), wake=True))
     rig.network.boards["AXIS_DEC"].power_off(rig.network.queue.now_ns)

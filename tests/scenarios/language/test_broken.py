@@ -118,6 +118,7 @@ def test_a_broken_command_line_is_one_line_and_status_2(words: tuple[str, ...], 
     assert len(result.stderr) < 1000
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(60)
 def test_more_runs_than_any_memory_holds_is_one_line(tmp_path: Path) -> None:
     root = Path(__file__).parents[3]

@@ -121,6 +121,7 @@ def test_a_snapshot_in_the_middle_goes_on_to_the_same_log(tmp_path: Path) -> Non
     assert (tmp_path / "one/guiding.txt").read_bytes() == (tmp_path / "two/guiding.txt").read_bytes()
 
 
+@pytest.mark.slow
 def test_the_axes_go_on_with_the_star_whatever_follows(tmp_path: Path) -> None:
     steps = "".join(
         f"  - {{name: {name}, {what}}}\n"

@@ -104,6 +104,7 @@ def test_an_axis_log_has_the_rows_of_the_window_and_its_ends(left: Outcome) -> N
     assert len(left.axis_log("ra", 5.0, 6.0)["t"]) == 0
 
 
+@pytest.mark.slow
 def test_a_star_is_where_it_is_observed_between_two_seconds_too(left: Outcome) -> None:
     """Through the lower meridian, where an hour angle comes back to -pi."""
     t = np.arange(0.0, 86_400.0, 600.3)

@@ -38,6 +38,7 @@ def test_quick_look_holds_all_its_expectations(quick: runner.Result) -> None:
     assert quick.passed, [verdict for verdict in quick.verdicts if not verdict.passed]
 
 
+@pytest.mark.slow
 def test_output_folder_has_everything(quick: runner.Result) -> None:
     names = {path.name for path in quick.folder.iterdir()}
     wanted = "summary.json can.log commands.log status.log sensors.log errors.log axis-ra.csv axis-dec.csv"
