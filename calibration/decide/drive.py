@@ -113,20 +113,19 @@ def worth_little(s: Selection) -> tuple[int, str] | None:
 def remainder(s: Selection) -> tuple[int, str] | None:
     """An effect worth a few per cent of all: an imperfect model of the strongest one leaves as much.
 
-    Not one that follows another column of the log, and takes much of what is left above the floor without it.
+    Not one that takes much of what is left above the floor without it, and follows another column of the log.
+    Nor a line that does, where the strongest one is a function of the time.
     """
     strongest = dominant(s)
     if not strongest:
         return None
     taken = s.held.taken
-    each_worth = [x.left - s.left for x in s.each_left_out]
-    least = s.problem.floor**2
-    told = [
-        c.name == strongest
-        or (c.domain in OTHER_COLUMNS and x + s.left > max(least, s.left / (1 - limits.PLAINLY)))
-        for c, x in zip(s.candidates, each_worth, strict=True)
-    ]
-    worth = np.where(told, np.inf, each_worth)
+    slow = any(c.domain == "time" for c in s.candidates if c.name == strongest)
+    apart = [c.domain in OTHER_COLUMNS or (slow and c.kind == "line") for c in s.candidates]
+    without = [x.left for x in s.each_left_out]
+    plain = np.array(without) > max(s.problem.floor**2, s.left / (1 - limits.PLAINLY))
+    told = np.array([c.name == strongest for c in s.candidates]) | (apart & plain)
+    worth = np.where(told, np.inf, np.array(without) - s.left)
     k = int(np.argmin(worth))
     part = f"{100 * max(worth[k], 0.0) / taken:.1f} %"
     why = f"worth {part} of what is found: a remainder of {strongest} as well"

@@ -26,6 +26,8 @@ from tests.calibration.decide.made import term
 
 NONE = np.zeros((4, 1))
 DOMAINS = {"torque_ripple": "axis_angle", "winding_heating": "temperature", "supply_sag": "current"}
+DOMAINS |= {"gear_mesh": "axis_angle", "position_friction": "axis_angle"}
+KINDS = {"gear_mesh": "line"}
 
 
 @dataclass
@@ -40,7 +42,10 @@ class Told:
 
     @property
     def candidates(self) -> list[Any]:
-        return [replace(term(n, NONE), domain=DOMAINS.get(n, "time")) for n in self.names]
+        kinds = {n: {"kind": KINDS[n]} for n in self.names if n in KINDS}
+        return [
+            replace(term(n, NONE), domain=DOMAINS.get(n, "time"), **kinds.get(n, {})) for n in self.names
+        ]
 
     @property
     def chosen(self) -> list[Any]:
@@ -115,6 +120,10 @@ def test_a_name_takes_more_than_a_tenth_of_what_nothing_explains(worth: float, g
         (["brake_drag", "supply_sag"], {"bs": 3.0, "b": 4.2, "s": 99.0}, None),
         (["brake_drag", "supply_sag"], {"bs": 3.0, "b": 3.9, "s": 99.0}, 1),
         (["brake_drag", "load_friction"], {"bl": 3.0, "b": 4.2, "l": 99.0}, 1),
+        # and so does a line beside a function of the time, which has no part that repeats with every turn
+        (["brake_drag", "gear_mesh"], {"bg": 3.0, "b": 4.2, "g": 99.0}, None),
+        (["brake_drag", "gear_mesh"], {"bg": 3.0, "b": 3.9, "g": 99.0}, 1),
+        (["brake_drag", "position_friction"], {"bp": 3.0, "b": 4.2, "p": 99.0}, 1),
         (["brake_drag", "load_friction"], {"bl": 10.0, "b": 20.0, "l": 20.0}, None),
     ],
 )
@@ -131,6 +140,11 @@ def test_a_column_tells_nothing_below_the_floor(floor: float, gone: int | None) 
     left = {"bs": 3.0, "b": 4.2, "s": 99.0}
     s = Told(["brake_drag", "supply_sag"], left, problem=SimpleNamespace(floor=floor))
     assert asked(remainder, s) == gone
+
+
+def test_a_line_beside_what_is_no_function_of_the_time_is_its_remainder() -> None:
+    s = Told(["position_friction", "gear_mesh"], {"gp": 3.0, "p": 4.2, "g": 99.0})
+    assert asked(remainder, s) == 1
 
 
 def test_a_name_that_harms_is_worth_nothing_of_all() -> None:
