@@ -43,9 +43,7 @@ class Told:
     @property
     def candidates(self) -> list[Any]:
         kinds = {n: {"kind": KINDS[n]} for n in self.names if n in KINDS}
-        return [
-            replace(term(n, NONE), domain=DOMAINS.get(n, "time"), **kinds.get(n, {})) for n in self.names
-        ]
+        return [replace(term(n, NONE), domain=DOMAINS.get(n, "time"), **kinds.get(n, {})) for n in self.names]
 
     @property
     def chosen(self) -> list[Any]:
