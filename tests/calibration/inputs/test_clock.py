@@ -95,6 +95,7 @@ def test_rows_out_of_order_are_left_out_of_every_column() -> None:
         ({199: 3.0}, {199}),
         ({50: np.nan, 90: 3.0}, set()),  # not all are numbers
         ({50: 49.0}, set()),  # twice the same stamp is in order
+        ({**dict.fromkeys(range(11, 20), 10.0), 50: 3.0}, {50}),  # ten times is, too
         ({}, set()),
     ],
 )

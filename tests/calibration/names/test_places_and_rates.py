@@ -1,6 +1,6 @@
 """Names of two sensors and of a force along one motion: their columns are what the effect makes."""
 
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -130,6 +130,20 @@ def test_a_sensor_drifts_with_a_temperature_that_changes(change: float, told: bo
     wanted = "" if told else "a temperature that changes by more than 0.5 K"
     assert encoder_thermal_drift.lacks(s) == wanted
     assert encoder_thermal_drift.lacks(sensors()) == "a temperature column"
+
+
+@pytest.mark.parametrize(("change", "told"), [(0.29, 1), (0.31, 2)])
+def test_an_axis_sensor_drifts_with_less_and_with_the_time(change: float, told: int) -> None:
+    """Of an axis the encoder's own angle is subtracted, and a log without a temperature may have warmed."""
+    s = sensors(columns={"temperature": 20 + change * T / T[-1]})
+    s.pair = cast(Any, object())
+    found = encoder_thermal_drift.columns(s)
+    assert [c.domain for c in found] == ["temperature", "time"][2 - told :]
+    steady = found[-1].columns[:, 0]
+    assert steady == pytest.approx((T - T.mean()) / T[-1]) and found[-1].labels == (("drift", "m"),)
+    if told == 2:
+        t = s.view.columns["temperature"]
+        assert found[0].columns[:, 0] == pytest.approx(t.mean() - t)
 
 
 def test_a_drift_enters_the_plant_per_kelvin_or_by_its_own_warming() -> None:

@@ -37,6 +37,10 @@ def test_a_weight_is_a_sine_over_the_angle() -> None:
     assert np.array_equal(second.columns, first.columns) and second.note.startswith(
         "over the sum of this joint's"
     )
+    joint = 0.5 * X**2
+    _, second = gravity_imbalance.columns(scene(columns={"joint": joint}))
+    angle = 2 * np.pi * (X + joint) / 8
+    assert np.ptp(second.columns @ np.linalg.pinv(second.columns) @ np.cos(angle) - np.cos(angle)) < 1e-9
     assert gravity_imbalance.columns(scene(declared={"gravity_cos": 1.0})) == []
 
 
