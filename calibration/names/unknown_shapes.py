@@ -93,11 +93,17 @@ def spring(s: Scene) -> list[Candidate]:
 
 
 def bend(s: Scene) -> list[Candidate]:
-    """Friction that bends with the speed, as grease and strain wave gears have it: odd, of second order."""
+    """Friction that bends with the speed, as grease and strain wave gears have it: odd, of second order.
+
+    Where the viscous term was taken out of the balance, as it came out negative, a slope is a part of it."""
     if not s.force or s.view.response.is_speed or "viscous" not in s.declared:
         return []
     part = s.view.speed / (s.view.top or 1.0)
-    return [over("velocity", s.at(part * np.abs(part)), ("square", s.unit))]
+    square, sizes = part * np.abs(part), (("slope", s.unit), ("square", s.unit))
+    names = [name for name, _ in s.problem.base_labels]
+    out = "viscous" in names and not s.problem.base[:, names.index("viscous")].any()
+    columns = np.column_stack([part, square]) if out else square[:, None]
+    return [over("velocity", s.at(columns), *sizes[-columns.shape[1] :])]
 
 
 def of_volts(s: Scene) -> list[Candidate]:

@@ -106,6 +106,20 @@ def test_grease_bends_with_the_square_of_the_speed() -> None:
     assert not shapes.bend(drive(np.zeros(9), declared={"viscous": 1.0}))[0].columns.any()
 
 
+@pytest.mark.parametrize("size", [0.0, 1.0])
+def test_a_viscous_term_that_was_taken_out_is_a_part_of_the_bend(size: float) -> None:
+    """A friction that is an arch over the speed rises first: the square alone only falls."""
+    rate = np.gradient(STROKES)
+    base = np.column_stack([np.ones(2000), size * rate])
+    s = drive(STROKES, base=base, declared={"viscous": size})
+    s.problem.base_labels = [("offset", "N"), ("viscous", "N s/m")]
+    (c,) = shapes.bend(s)
+    part = s.view.speed / s.view.top
+    square = part * np.abs(part)
+    assert c.columns == pytest.approx(np.column_stack([part, square] if size == 0 else [square]))
+    assert [name for name, _ in c.labels] == (["slope", "square"] if size == 0 else ["square"])
+
+
 def pulled(lagging: np.ndarray) -> Scene:
     """Of two motors, four rows each, A's first."""
     rows = np.arange(4)
