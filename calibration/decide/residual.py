@@ -52,6 +52,7 @@ class Left:
     function of (None: of none that was tried) is in words, with the share of its mean square there.
 
     effect: so large that it is an effect without a name, or a reason not to say "nothing".
+    noise: it is only louder in places, and no row tells of another one beyond the filter.
     """
 
     times: float
@@ -60,6 +61,7 @@ class Left:
     where: str = "in no domain that was tried"
     share: float = 0.0
     effect: bool = True
+    noise: bool = False
 
 
 class Place(NamedTuple):
@@ -122,8 +124,8 @@ def _where(s: Selection, scene: Scene, rows: Mask, found: Left) -> Left:
     # what the declared terms' own errors leave over a place, where nothing has a name, is no effect
     nameless = scene.force and all(c.name == UNKNOWN for c in s.candidates)
     own = nameless and np.sqrt(most) * np.std(e[rows]) < OWN_ERRORS * np.std((p.y - e)[rows])
-    where = f"over {place.words}{how}"
-    return replace(found, domain=None if own else place.domain, where=where, share=most)
+    where, noise = f"over {place.words}{how}", how == IN_SIZE and alone < limits.LEAST_SHARE
+    return replace(found, domain=None if own else place.domain, where=where, share=most, noise=noise)
 
 
 def lives_in(s: Selection, places: Sequence[Place], stacked: int = 1) -> tuple[str | None, float, str]:

@@ -206,7 +206,9 @@ def unnamed_where_missing(
     if not effects:
         close = any(r.why.startswith((SHORT, FEW)) for b in balances for r in b.selection.refused)
         sure = [(b, m) for b, m in large if not needs or (b.fitted_times > EFFECT and not close)]
-        effects = [Finding(UNKNOWN, b.key, m.domain, note=b.still) for b, m in sure if m.domain]
+        effects = [
+            Finding(UNKNOWN, b.key, m.domain, note=b.still) for b, m in sure if m.domain and not m.noise
+        ]
     more = [f"{b.still}: a column of what may drive it, or one quantity changed at a time" for b, _ in large]
     return effects, list(dict.fromkeys([*needs, *more]))
 

@@ -85,6 +85,17 @@ def test_what_is_left_lives_where_its_bin_means_take_most(
     left = left_over(of(y, files), scene(), 0.5)
     assert left is not None and left.effect
     assert (left.where, left.domain, left.share) == (where, domain, pytest.approx(share, abs=0.05))
+    assert left.noise is where.endswith("in size")
+
+
+@pytest.mark.parametrize(("rows", "noise"), [(1, True), (4, True), (12, False)])
+def test_what_is_louder_in_places_is_noise_unless_rows_beyond_the_filter_share_it(
+    rows: int, noise: bool
+) -> None:
+    """A vibration that comes and goes has a wave of its own, longer than the filter's four rows."""
+    quick = np.convolve(NOISE, np.ones(rows) / np.sqrt(rows), "same")
+    left = left_over(of(np.where(X < 0.5, 1.0, 3.0) * quick), scene(), 0.5)
+    assert left is not None and (left.where, left.noise) == ("over axis angle, in size", noise)
 
 
 def test_what_neighbours_share_and_no_domain_has_lives_over_time_alone() -> None:

@@ -66,6 +66,9 @@ def test_a_large_residual_without_a_name_is_unknown_or_a_need(quiet: Selection) 
     nowhere = [replace(balance(quiet), missing=missing(90.0, None))]  # of nothing that a log may hold
     effects, needs = unnamed_where_missing([], [], nowhere)
     assert effects == [] and needs[0].startswith("something is still missing in ")
+    loud = [replace(balance(quiet), missing=replace(missing(9.0, "time"), noise=True))]
+    effects, needs = unnamed_where_missing([], [], loud)
+    assert effects == [] and len(needs) == 1  # neither an effect nor nothing
     small = [replace(balance(quiet), missing=missing(3.0, "time", effect=False))]
     assert unnamed_where_missing([], [], small) == ([], [])
 
