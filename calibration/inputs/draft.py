@@ -30,6 +30,8 @@ TURNS = 3.0  # turns that a log has of a stage worth declaring. ASSUMPTION
 STEADY = 0.2  # of the mean, that a steady speed or supply may scatter. ASSUMPTION
 EITHER_WAY = 0.05  # share of rows that move either way, before friction is told from an offset. ASSUMPTION
 SINCE_1970_S = 1e9  # s since 1970, from where a stamp is the time of day: the year 2001. definition
+# of what another column of its channel and unit moves: a joint that stands beside one that moves. ASSUMPTION
+STANDS = 0.01
 LEAST_BITS = 6  # bits of a sensor's turn, at least, by which its unit is guessed. ASSUMPTION
 # of a power of two of steps, that a turn may be off it: what six digits of a scale leave. arithmetic
 WHOLE_BITS = 1e-4
@@ -132,7 +134,16 @@ def _clock(d: _Draft, loose: Loose) -> None:
 
 
 def _by_name(d: _Draft) -> None:
-    for column, x in sorted(d.left.items(), key=lambda item: said(item[0]).asked):
+    widest: dict[tuple[str, str], float] = {}
+    for column, x in d.left.items():
+        kind = said(column).channel, said(column).unit
+        widest[kind] = max(widest.get(kind, 0.0), float(np.ptp(x)))
+
+    def last(column: str | int) -> tuple[bool, bool]:
+        says = said(column)
+        return says.asked, bool(np.ptp(d.left[column]) < STANDS * widest[says.channel, says.unit])
+
+    for column, x in sorted(d.left.items(), key=lambda item: last(item[0])):
         says = said(column)
         channel = "reference" if says.asked and says.channel in ("", "position") else says.channel
         if channel == "supply" and np.std(x) > STEADY * abs(np.mean(x)):

@@ -99,6 +99,13 @@ def test_a_rate_in_other_units_has_their_factor_and_a_strange_one_its_own(tmp_pa
     assert "velocity" not in places(drafted(log)) and "does not go with the position's rate" in draft(log)
 
 
+@pytest.mark.parametrize(("part", "taken"), [(0.009, "b_position [rad]"), (0.011, "a_position [rad]")])
+def test_of_two_joints_the_one_that_moves_is_the_position(tmp_path: Path, part: float, taken: str) -> None:
+    head = ["t", "a_position [rad]", "b_position [rad]", "torque"]
+    log = write(tmp_path / "log.csv", head, (T, part * np.ptp(X) * np.sin(0.3 * T) / 2, X, U))
+    assert drafted(log).columns["position"].column == taken
+
+
 def test_stamps_in_words_and_long_tables_are_drafted(tmp_path: Path) -> None:
     begin = datetime(2024, 5, 1, 23, 59, 50)
     stamps = [(begin + timedelta(seconds=float(t))).isoformat() for t in T]
