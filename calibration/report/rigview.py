@@ -22,6 +22,7 @@ from calibration.report.plots import drawn, figure
 
 # candidates that a balance has before one is known to be none of it. ASSUMPTION
 USUAL_CANDIDATES = 1000
+TABLES = 4  # runs that have a table of their columns: of more there is a line each. ASSUMPTION
 
 
 def show_rig(rig_file: Path, logs: list[Path], out: Path | None = None) -> str:
@@ -35,8 +36,8 @@ def show_rig(rig_file: Path, logs: list[Path], out: Path | None = None) -> str:
     records = drive.records if drive is not None else []
     if drive is not None and records:
         lines.append(f"files start by {drive.clock}")
-        for r in records:
-            lines += ["", _head(r), *_table(r.signals.values())]
+        for k, r in enumerate(records):
+            lines += [*[""] * (k <= TABLES), _head(r), *(_table(r.signals.values()) if k < TABLES else [])]
             lines += [f"  ! {x.channel}: {x.note}" for x in r.repairs]
         lines += ["", *(x for response in rig.responses for x in _power(records, rig, response))]
     elif drive is not None:

@@ -58,3 +58,13 @@ def test_the_rig_file_may_be_named_as_calibrate_takes_it(tmp_path: Path) -> None
         CliRunner().invoke(cli, ["rig", *map(str, words)]) for words in ((rig, log), (log, "--rig", rig))
     )
     assert (named.exit_code, named.stdout) == (0, plain.stdout) and "force: " in named.stdout
+
+
+def test_of_many_runs_the_first_have_a_table_and_all_a_line(tmp_path: Path) -> None:
+    rows = "\n".join(f"{k},{0.01 * k + 0.02 * a:.4f},{a % 3}" for k in range(6) for a in range(30))
+    (tmp_path / "a.csv").write_text(f"run,x,u\n{rows}\n", encoding="utf-8")
+    rig = RIG.replace("  time: {column: t, unit: s}\n", "").replace("analyse_period_s: 0.01\n", "")
+    (tmp_path / "rig.yaml").write_text(rig + "sample_period_s: 0.01\nruns: {column: run}\n", encoding="utf-8")
+    lines = show_rig(tmp_path / "rig.yaml", [tmp_path / "a.csv"]).splitlines()
+    assert sum(line.startswith("a{") for line in lines) == 6
+    assert sum(line.startswith("  channel ") for line in lines) == 4
