@@ -39,14 +39,15 @@ def parts_of_clock(raw: dict[str, Array], t: Array) -> list[tuple[dict[str, Arra
 
 
 def parts_of_label(raw: dict[str, Array], label: Array, t: Array | None) -> list[dict[str, Array]]:
-    """A table's parts over which `label` (n,) keeps its value, or has none.
+    """A table's parts over which `label` (n,) keeps its value. A row without one belongs to the run before.
 
     A long gap of the clock `t` (n,), where there is one, parts rows as well, and sensors keep their zeros.
     """
-    new = (np.diff(label) != 0) & ~(np.isnan(label[1:]) & np.isnan(label[:-1]))
-    if t is not None and len(t) > 1:
-        new &= ~(np.diff(t) > LONG_GAP * np.nanmedian(np.diff(t)))
-    edges = itertools.pairwise([0, *(np.flatnonzero(new) + 1), len(label)])
+    known = np.flatnonzero(~np.isnan(label))
+    new = known[1:][np.diff(label[known]) != 0]
+    if t is not None and len(new):
+        new = new[~(t[new] - t[new - 1] > LONG_GAP * np.nanmedian(np.diff(t)))]
+    edges = itertools.pairwise([0, *new, len(label)])
     return [{name: x[a:b] for name, x in raw.items()} for a, b in edges]
 
 

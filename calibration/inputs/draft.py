@@ -134,22 +134,13 @@ def _clock(d: _Draft, loose: Loose) -> None:
 
 
 def _by_name(d: _Draft) -> None:
-    widest: dict[tuple[str, str], float] = {}
-    for column, x in d.left.items():
-        kind = said(column).channel, said(column).unit
-        widest[kind] = max(widest.get(kind, 0.0), float(np.ptp(x)))
-
-    def last(column: str | int) -> tuple[bool, bool]:
-        says = said(column)
-        return says.asked, bool(np.ptp(d.left[column]) < STANDS * widest[says.channel, says.unit])
-
-    for column, x in sorted(d.left.items(), key=lambda item: last(item[0])):
+    for column, x in sorted(d.left.items(), key=lambda item: (said(item[0]).asked, _stands(d, item[0]))):
         says = said(column)
         channel = "reference" if says.asked and says.channel in ("", "position") else says.channel
         if channel == "supply" and np.std(x) > STEADY * abs(np.mean(x)):
             channel = "effort"
         if channel == "label" and np.allclose(x % 1, 0) and "runs" not in d.fields:
-            d.fields["runs"] = {"by": "column", "column": column}, ""
+            d.fields["runs"] = {"column": column}, ""
             d.left.pop(column)
         elif says.asked and channel in FORCES and not d.roles.keys() & FORCES:
             d.put("effort", column, says.unit, says.scale, "asked for, but no other column is a force")
@@ -159,6 +150,13 @@ def _by_name(d: _Draft) -> None:
             d.unsaid.append(f"{column!r}: {why}; it is left out")
         elif channel and channel not in d.roles:
             d.put(channel, column, says.unit, says.scale)
+
+
+def _stands(d: _Draft, column: str | int) -> bool:
+    """Whether a column hardly moves beside another one of its channel and unit."""
+    kind = said(column).channel, said(column).unit
+    alike = [np.ptp(x) for c, x in d.left.items() if (said(c).channel, said(c).unit) == kind]
+    return bool(np.ptp(d.left[column]) < STANDS * max(alike))
 
 
 def _by_motion(d: _Draft) -> None:

@@ -61,8 +61,8 @@ def rows_without_a_stamp(run: Run) -> None:
 
 
 def _moved_on(run: Run, whole: Array) -> bool:
-    """Steps (n - 1,) of `whole` periods between rows of one run, over which the drive moved on as the clock
-    did. Over a stamp that jumps it moves by one row, over a rest not at all."""
+    """Whether over steps (n - 1,) of `whole` periods the drive moved on as the clock did. Over a stamp that
+    jumps it moves by one row, over a rest not at all."""
     step = np.nan_to_num(np.abs(np.diff(run.columns["position"])))
     usual = np.maximum(np.roll(step, 1), np.roll(step, -1))
     wide = whole >= 2

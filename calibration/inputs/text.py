@@ -19,7 +19,7 @@ NAME_WORDS = 2  # words of a column's name: itself and its unit. A remark has mo
 MOST_COLUMNS = 4096  # Ten times the widest table known. ASSUMPTION.
 COMMAS = ": decimal commas? write points"
 STAMP = ": a stamp? the column time takes 'format: iso'"
-UNIT = re.compile(r"\[.*\]|\(.*\)|-?")  # of a row of units below the names
+_UNIT = re.compile(r"\[.*\]|\(.*\)|-?")  # of a row of units below the names
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?inf(inity)?", re.ASCII | re.IGNORECASE)
 """What a field may hold: Python's `float` also takes 1_0 and digits of other scripts."""
 
@@ -131,7 +131,7 @@ def heading(path: Path, text: str, names: tuple[str, ...] = (), delimiter: str |
     skip = _behind_remarks(lines, rows[0], delimiter)
     mark = delimiter or _mark(lines[skip])
     if mark == " ":  # aligned columns are parted by any number of blanks
-        lines = [" ".join(_told(line.split(), len(names))) for line in lines]
+        lines = [" ".join(_named(line.split(), len(names))) for line in lines]
     check_width(path, lines[skip].count(mark) + 1, skip + 1)
     fields, first, said = split(lines[skip], mark), skip + 1, list[str]()
     if names or all(f and plain(f) is not None for f in fields):
@@ -163,7 +163,7 @@ def _unterminated(lines: list[str]) -> list[str]:
     return [line.rstrip(BLANK).removesuffix(";") for line in lines]
 
 
-def _told(fields: list[str], named: int) -> list[str]:
+def _named(fields: list[str], named: int) -> list[str]:
     """Fields of a row of which the first `named` have names (0: all), without words behind them."""
     return fields[:named] if 0 < named < len(fields) and plain(fields[named]) is None else fields
 
@@ -203,7 +203,7 @@ def _commented(above: list[str], mark: str, count: int) -> list[str]:
     """Names in the last comment above rows of numbers, where it has one for each of `count` columns."""
     remarks = (line for line in reversed(above) if line.startswith(("#", "%")))
     some = ([name.rstrip(",;") for name in split(line.lstrip("#% "), mark)] for line in remarks)
-    names = next((row for row in some if not all(UNIT.fullmatch(name) for name in row)), [])
+    names = next((row for row in some if not all(_UNIT.fullmatch(name) for name in row)), [])
     words = all(name and plain(name) is None and len(name.split()) <= NAME_WORDS for name in names)
     return names if len(names) == count > 1 and words and len(set(names)) == count else []
 

@@ -61,12 +61,20 @@ def test_a_part_whose_clock_stands_was_never_written() -> None:
 
 @pytest.mark.parametrize(
     ("label", "sizes"),
-    [([1, 1, 2, 2, 2, 1], [2, 3, 1]), ([5, 5, 5], [3]), ([NAN, NAN, 1, 1, NAN], [2, 2, 1]), ([7], [1])],
+    [
+        ([1, 1, 2, 2, 2, 1], [2, 3, 1]),
+        ([5, 5, 5], [3]),
+        ([7], [1]),
+        ([NAN, 1, NAN, 1, NAN, 2, NAN], [5, 2]),  # a row without one belongs to the run before
+        ([NAN, NAN], [2]),
+    ],
 )
 def test_a_label_parts_every_column(label: list[float], sizes: list[int]) -> None:
     x = np.arange(len(label), dtype=float)
     found = parts_of_label({"x": x, "label": np.array(label)}, np.array(label), None)
     assert [len(part["x"]) for part in found] == sizes
+    even = parts_of_label({"x": x}, np.array(label), x)
+    assert [len(part["x"]) for part in even] == sizes
     assert np.concatenate([part["x"] for part in found]).tolist() == x.tolist()
 
 

@@ -127,7 +127,7 @@ def test_a_voltage_that_scatters_is_no_supply(scatter: float, channel: str) -> N
 
 def test_a_label_of_whole_numbers_parts_the_runs() -> None:
     d = named(run=1.0 * (K // 100), trial=1.0 * (K // 50), pos=WAVE)
-    assert d.fields == {"runs": ({"by": "column", "column": "run"}, "")}
+    assert d.fields == {"runs": ({"column": "run"}, "")}
     assert d.unsaid == ["'trial': label; it is left out"] and set(d.left) == set()
     assert named(run=WAVE).unsaid == ["'run': label; it is left out"]
     assert named(frame=1.0 * K).unsaid == ["'frame': count; it is left out"]
